@@ -1,0 +1,149 @@
+"""All settings: typed, frozen defaults; overrides from a TOML file; canonical JSON for the record."""
+
+import json
+import math
+import tomllib
+from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
+from pathlib import Path
+from typing import Any, get_type_hints
+
+from affcli.core.workspace import Workspace
+from affcli.errors import BadInputError, one_line
+from affcli.perception.noisy_sensor import SensorSettings
+from affcli.procedures.babbling import BabblingSettings
+from affcli.procedures.extension_of_reach import TrialLimits
+from affcli.simulation.physics_settings import PhysicsSettings
+
+MAY_BE_NEGATIVE = frozenset({"arm.shoulder_min_degrees"})
+MAY_BE_ZERO = frozenset(
+    {
+        "arm.flange_height",
+        "arm.shoulder_min_degrees",
+        "friction.tool_puck",
+        "tools.handle_below_grasp",
+        "sensor.position_noise",
+        "sensor.color_noise",
+        "motion.hold",
+        "motion.grasp_time",
+    }
+)
+AT_MOST = {"arm.waist_max_degrees": 90.0, "arm.elbow_max_degrees": 180.0}
+LARGEST = 1e6
+"""No length, time or count of this laboratory is larger; a number beyond it is a mistake."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """Everything a run depends on beside its seed.
+
+    Args:
+        workspace: the geometry. Its parts (arm, tools, puck, friction, layout, motion, table) are
+            sections of the TOML file beside the four below.
+        sensor: how noisy the observations are.
+        physics: how finely pushing is solved.
+        babbling: where the robot plays.
+        trial: when it gives up.
+    """
+
+    workspace: Workspace = field(default_factory=Workspace)
+    sensor: SensorSettings = field(default_factory=SensorSettings)
+    physics: PhysicsSettings = field(default_factory=PhysicsSettings)
+    babbling: BabblingSettings = field(default_factory=BabblingSettings)
+    trial: TrialLimits = field(default_factory=TrialLimits)
+
+    def to_json(self) -> str:
+        """Return the settings as canonical JSON: equal settings give equal text."""
+        return json.dumps(_sections(self), sort_keys=True, separators=(",", ":"))
+
+
+def settings_from_json(text: str) -> Settings:
+    """Return the settings that `Settings.to_json` wrote.
+
+    Raises:
+        BadInputError: a section, key or value that this version does not know.
+    """
+    return settings_with(json.loads(text), "the stored settings")
+
+
+def load_settings(path: Path | None) -> Settings:
+    """Return the defaults with the overrides of a TOML file.
+
+    Raises:
+        BadInputError: the file cannot be read or parsed, or names an unknown section or key, or a
+            value of the wrong kind or range; the message names the path in the file.
+    """
+    if path is None:
+        return Settings()
+    try:
+        overrides = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise BadInputError(
+            f"config {one_line(path)}: {error.strerror}; give a TOML file that can be read"
+        ) from error
+    except (ValueError, RecursionError) as error:
+        raise BadInputError(f"config {one_line(path)}: not TOML: {one_line(error)}") from error
+    return settings_with(overrides, f"config {one_line(path)}")
+
+
+def settings_with(overrides: dict[str, Any], source: str) -> Settings:
+    """Return the defaults with `overrides`: a mapping of sections to mappings of keys to numbers.
+
+    Raises:
+        BadInputError: as `load_settings`, quoting `source`.
+    """
+    settings = Settings()
+    workspace = settings.workspace
+    for section, values in overrides.items():
+        parts = {f.name for f in fields(workspace)}
+        owner: Any = workspace if section in parts else settings
+        if section == "workspace" or section not in {f.name for f in fields(owner)}:
+            known = sorted(_sections(settings))
+            raise BadInputError(
+                f"{source}: no section {one_line(section)}; the sections are {', '.join(known)}"
+            )
+        part = _overridden(getattr(owner, section), section, values, source)
+        if owner is workspace:
+            workspace = replace(workspace, **{section: part})
+        else:
+            settings = replace(settings, **{section: part})
+    return replace(settings, workspace=workspace)
+
+
+def _sections(settings: Settings) -> dict[str, dict[str, Any]]:
+    """Return the settings as the sections of the TOML file."""
+    whole = asdict(settings)
+    return {**whole.pop("workspace"), **whole}
+
+
+def _overridden(part: Any, section: str, values: object, source: str) -> Any:
+    """Return one section's dataclass with its overrides, checked."""
+    assert is_dataclass(part)
+    if not isinstance(values, dict):
+        raise BadInputError(f"{source}: {section} must be a section, [{section}]")
+    kinds = get_type_hints(type(part))
+    checked = {}
+    for key, value in values.items():
+        path = f"{section}.{one_line(key)}"
+        if key not in kinds:
+            raise BadInputError(f"{source}: no key {path}; known: {', '.join(sorted(kinds))}")
+        checked[key] = _number(path, value, kinds[key], source)
+    return replace(part, **checked)  # type: ignore[type-var]
+
+
+def _number(path: str, value: object, kind: type, source: str) -> float | int:
+    """Return `value` if it is a number of the right kind in the range of its key."""
+    wanted = "a whole number" if kind is int else "a number"
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise BadInputError(f"{source}: {path} = {one_line(value)} must be {wanted}")
+    if kind is int and not isinstance(value, int):
+        raise BadInputError(f"{source}: {path} = {value} must be {wanted}")
+    low_is_in = path in MAY_BE_ZERO
+    low = -LARGEST if path in MAY_BE_NEGATIVE else 0.0
+    high = AT_MOST.get(path, LARGEST)
+    fits = (low <= value if low_is_in else low < value) and value <= high
+    if not (fits and math.isfinite(value)):
+        bracket = "[" if low_is_in else "("
+        raise BadInputError(
+            f"{source}: {path} = {one_line(value)} must lie in {bracket}{low:g}, {high:g}]"
+        )
+    return value if kind is int else float(value)

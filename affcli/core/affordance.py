@@ -1,0 +1,57 @@
+"""One row of the affordance table (§3.2)."""
+
+from dataclasses import dataclass
+
+from affcli.core.behavior import BehaviorCall
+from affcli.core.change_detection import MOVEMENT_THRESHOLD
+from affcli.core.observation import Movement, Observation, angle_between_degrees, movement
+
+REPLICATION_ANGLE_DEGREES = 40.0
+"""A use is successful when the movement seen is within this angle of the one expected (§5.2)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Affordance:
+    """One row: what was done with the tool and what was seen before and after.
+
+    Args:
+        step: the step of the learning run that made the row; older rows have lower steps.
+        binding: the binding behavior and its parameters.
+        exploratory: the exploratory behavior and its commanded parameters.
+        start: O^s, the observation vector when the exploratory behavior began.
+        end: O^e, the observation vector when it had ended.
+        truncated: the behavior met the edge of the reach and stopped there.
+        times_used: how often this sequence of behaviors was performed; 1 when the row is made.
+        times_successful: how often it gave similar observations; 1 when the row is made.
+    """
+
+    step: int
+    binding: BehaviorCall
+    exploratory: BehaviorCall
+    start: Observation
+    end: Observation
+    truncated: bool = False
+    times_used: int = 1
+    times_successful: int = 1
+
+    @property
+    def replication_probability(self) -> float:
+        """times_successful / times_used (§6.2)."""
+        return self.times_successful / self.times_used
+
+    @property
+    def expected_movement(self) -> Movement:
+        """The movement this row predicts: O^e - O^s over o1 to o3 (in, table frame)."""
+        return movement(self.start, self.end)
+
+
+def replicates(expected: Movement, seen: Movement) -> bool:
+    """Tell whether `seen` counts as a success of a row that expects `expected`.
+
+    §5.2: "The times-successful counter is incremented if the observed attractor movement is within
+    40 degrees of the expected movement stored in the affordance table." A movement that T would not
+    detect has no direction, so it is a failure.
+    """
+    if seen.distance <= MOVEMENT_THRESHOLD:
+        return False
+    return angle_between_degrees(expected, seen) <= REPLICATION_ANGLE_DEGREES

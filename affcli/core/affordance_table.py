@@ -1,0 +1,97 @@
+"""The affordance table in memory: rows in the order they were made, with columns for the query."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from affcli.core.affordance import Affordance
+from affcli.core.observation import Observation
+
+Rows = NDArray[np.intp]
+"""Positions of rows in a table, in ascending order: lower is older."""
+
+COLOR_TOLERANCE = 30.0
+"""Two colours are consistent when they differ by at most this much in RGB (Euclidean, 0 to 255).
+Choice: 15 standard deviations of the default sensor's colour noise, half the distance between the
+two most similar tools."""
+
+
+class AffordanceTable:
+    """Affordances ordered by age, with numpy columns that the nested searches read.
+
+    The columns of what was learned never change; the counters do. Colours are kept as classes: the
+    first row of a new colour founds a class, later rows within `COLOR_TOLERANCE` join it.
+
+    Attributes:
+        movement_x, movement_y, movement_z: expected movement of each row (n,), in, table frame.
+        offset_x, offset_y: attractor as seen from the wrist at the start of each row (n,), in.
+        times_used, times_successful: the counters (n,), int64.
+    """
+
+    def __init__(self, rows: Iterable[Affordance] = ()) -> None:
+        self._rows = sorted(rows, key=lambda row: row.step)
+        movements = np.array([row.expected_movement for row in self._rows]).reshape(-1, 3)
+        offsets = np.array([row.start.wrist_to_object for row in self._rows]).reshape(-1, 2)
+        self.movement_x, self.movement_y, self.movement_z = np.ascontiguousarray(movements.T)
+        self.offset_x, self.offset_y = np.ascontiguousarray(offsets.T)
+        self.times_used = np.array([row.times_used for row in self._rows], dtype=np.int64)
+        self.times_successful = np.array(
+            [row.times_successful for row in self._rows], dtype=np.int64
+        )
+        self._class_of, self._class_colors = _color_classes(self._rows)
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def __iter__(self) -> Iterator[Affordance]:
+        return (self.row(i) for i in range(len(self)))
+
+    def row(self, position: int) -> Affordance:
+        """Return the row at `position` with its counters as they are now."""
+        return replace(
+            self._rows[position],
+            times_used=int(self.times_used[position]),
+            times_successful=int(self.times_successful[position]),
+        )
+
+    def as_learned(self) -> "AffordanceTable":
+        """Return a table of the same rows whose counters can change without touching this one."""
+        twin = object.__new__(AffordanceTable)
+        twin.__dict__.update(self.__dict__)
+        twin.times_used = self.times_used.copy()
+        twin.times_successful = self.times_successful.copy()
+        return twin
+
+    def with_colors_of(self, seen: Observation) -> Rows:
+        """Return the rows whose object and tool colours are consistent with `seen`."""
+        fitting = np.array([_consistent(c, seen.colors) for c in self._class_colors], dtype=bool)
+        if fitting.all():
+            return np.arange(len(self))
+        return np.flatnonzero(fitting[self._class_of])
+
+    def count_use(self, position: int, *, success: bool) -> None:
+        """Count one use of the row at `position`, as §3.2 does in testing trials."""
+        self.times_used[position] += 1
+        self.times_successful[position] += int(success)
+
+
+def _consistent(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
+    """Tell whether two (object, tool) colour sextuples differ by little in each of the two."""
+    pairs = [(x - y) ** 2 for x, y in zip(a, b, strict=True)]
+    return max(sum(pairs[:3]), sum(pairs[3:])) <= COLOR_TOLERANCE**2
+
+
+def _color_classes(rows: list[Affordance]) -> tuple[Rows, list[tuple[float, ...]]]:
+    """Sort rows into colour classes; return each row's class (n,) and the founding colours."""
+    founders: list[tuple[float, ...]] = []
+    class_of = np.empty(len(rows), dtype=np.intp)
+    for i, row in enumerate(rows):
+        colors = row.start.colors
+        found = next((k for k, c in enumerate(founders) if _consistent(c, colors)), None)
+        if found is None:
+            found = len(founders)
+            founders.append(colors)
+        class_of[i] = found
+    return class_of, founders

@@ -1,0 +1,83 @@
+"""Points, convex polygons and boxes in the table frame or in a tool's own frame.
+
+Frames: the table frame has its origin under the arm's shoulder, x to the robot's right, y away
+from the robot, z up. Inches. Polygons list their vertices counter-clockwise.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+
+class Point(NamedTuple):
+    """A point on the table plane: x to the right, y away from the robot (in)."""
+
+    x: float
+    y: float
+
+
+class Pose(NamedTuple):
+    """A rigid pose on the table: position (in) and angle (rad, counter-clockwise)."""
+
+    x: float
+    y: float
+    angle: float = 0.0
+
+    @property
+    def point(self) -> Point:
+        """The position without the angle."""
+        return Point(self.x, self.y)
+
+
+@dataclass(frozen=True, slots=True)
+class ConvexPolygon:
+    """A convex polygon, counter-clockwise.
+
+    Args:
+        vertices: at least three (x, y) pairs, in.
+    """
+
+    vertices: tuple[Point, ...]
+
+    @classmethod
+    def box(cls, left: float, bottom: float, right: float, top: float) -> "ConvexPolygon":
+        """Return the axis-aligned box between two corners (in)."""
+        corners = ((left, bottom), (right, bottom), (right, top), (left, top))
+        return cls(tuple(Point(*corner) for corner in corners))
+
+    @property
+    def area(self) -> float:
+        """Signed area by the shoelace formula (in^2); positive when counter-clockwise."""
+        return 0.5 * sum(a.x * b.y - b.x * a.y for a, b in self.edges())
+
+    def edges(self) -> Iterable[tuple[Point, Point]]:
+        """Yield the edges as (start, end), in order."""
+        return zip(self.vertices, self.vertices[1:] + self.vertices[:1], strict=True)
+
+    def moved(self, dx: float, dy: float) -> "ConvexPolygon":
+        """Return this polygon translated by (dx, dy) (in)."""
+        return ConvexPolygon(tuple(Point(x + dx, y + dy) for x, y in self.vertices))
+
+    def distance(self, point: Point) -> float:
+        """Return the distance from `point` to the polygon (in); 0 inside or on the edge."""
+        inside = True
+        nearest = math.inf
+        for a, b in self.edges():
+            ex, ey = b.x - a.x, b.y - a.y
+            px, py = point.x - a.x, point.y - a.y
+            if ex * py - ey * px < 0.0:
+                inside = False
+            along = min(1.0, max(0.0, (px * ex + py * ey) / (ex * ex + ey * ey)))
+            nearest = min(nearest, math.hypot(px - along * ex, py - along * ey))
+        return 0.0 if inside else nearest
+
+
+def distance_to_union(polygons: Sequence[ConvexPolygon], point: Point) -> float:
+    """Return the distance from `point` to the union of `polygons` (in); 0 inside."""
+    return min(polygon.distance(point) for polygon in polygons)
+
+
+def direction_degrees(dx: float, dy: float) -> float:
+    """Return the direction of (dx, dy) in degrees in [0, 360): 0 is right, 90 is away."""
+    return math.degrees(math.atan2(dy, dx)) % 360.0

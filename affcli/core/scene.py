@@ -1,0 +1,26 @@
+"""What is truly on the table: for the simulation, the sensor and the experimenter, never the robot."""
+
+from dataclasses import dataclass
+
+from affcli.core.geometry import Point, Pose
+from affcli.core.task import GoalRegion
+from affcli.core.tool import Color, Tool
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """The true state of the table at one moment.
+
+    Args:
+        attractor: pose of the puck's centre (in, rad, table frame).
+        attractor_color: its colour.
+        wrist: the wrist, which is the tool's grasp point (in, table frame).
+        tool: the tool held, by its true shape.
+        goal: the goal region on the table; None while learning.
+    """
+
+    attractor: Pose
+    attractor_color: Color
+    wrist: Point
+    tool: Tool
+    goal: GoalRegion | None

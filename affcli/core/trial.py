@@ -1,0 +1,196 @@
+"""What is recorded of learning and of testing trials."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import NamedTuple
+
+from affcli.core.affordance import Affordance
+from affcli.core.behavior import Execution
+from affcli.core.geometry import Pose
+from affcli.core.observation import Movement, Observation
+
+
+class Truth(NamedTuple):
+    """Where the attractor truly was before and after a behavior: for science and replays, never
+    for the robot."""
+
+    start: Pose
+    end: Pose
+
+
+class Protocol(StrEnum):
+    """What a testing trial is part of."""
+
+    EXTENSION_OF_REACH = "extension of reach"
+    """§7.1: the tool is what it was when its table was learned."""
+    TOOL_ADAPTATION = "tool adaptation"
+    """§7.2: another shape in the colour of the tool that was learned."""
+
+
+class Counters(StrEnum):
+    """Which counters a trial starts from and where its updates go."""
+
+    STORED = "stored"
+    """From the table as it is in the store; every step updates it there."""
+    AS_LEARNED = "as learned"
+    """From the table as learned; the trial keeps its counters in its own steps."""
+
+
+@dataclass(frozen=True, slots=True)
+class LearningSpec:
+    """What a learning run is a pure function of.
+
+    Args:
+        tool: name of the tool.
+        seed: 0 to 2^63 - 1.
+        robot: which of many robots that share the seed; 0 for the first.
+        hours: robot hours to babble for; None when `behaviors` is given.
+        behaviors: how many behaviors to execute; None when `hours` is given.
+        settings: all settings as canonical JSON.
+    """
+
+    tool: str
+    seed: int
+    robot: int
+    hours: float | None
+    behaviors: int | None
+    settings: str
+
+
+@dataclass(frozen=True, slots=True)
+class TrialSpec:
+    """What a testing trial is a pure function of, beside the table it starts from.
+
+    Args:
+        protocol: what it is part of.
+        tool: the tool the robot believes to hold: the one whose table it uses.
+        shape: the shape it truly holds; another one when the tool broke.
+        goal: 1 to 4.
+        start: 1 to 4.
+        seed: 0 to 2^63 - 1.
+        robot: which of many robots that share the seed.
+        counters: which counters it starts from and where updates go.
+    """
+
+    protocol: Protocol
+    tool: str
+    shape: str
+    goal: int
+    start: int
+    seed: int
+    robot: int
+    counters: Counters
+
+
+@dataclass(frozen=True, slots=True)
+class BabblingRecord:
+    """One executed exploratory behavior of a learning run, with or without effect.
+
+    Args:
+        step: 1, 2, 3, ... within the run.
+        clock: robot seconds when the step ended.
+        resets: how often the attractor was put back by hand before this behavior.
+        redraws: wrist positions drawn again because the tool would have come down on the attractor.
+        placing: the position wrist that went before.
+        execution: the exploratory behavior.
+        start: observation before the exploratory behavior (O^s).
+        end: observation after it (O^e).
+        affordance: the row it made, None when T = 0.
+    """
+
+    step: int
+    clock: float
+    resets: int
+    redraws: int
+    placing: Execution
+    execution: Execution
+    start: Observation
+    end: Observation
+    affordance: Affordance | None
+
+
+class Survivors(NamedTuple):
+    """How many rows each nested search of §6.2 left."""
+
+    consistent: int
+    """Search 1: colours fit the current tool and object."""
+    probable: int
+    """Search 2: replication probability greater than 1/2."""
+    reachable: int
+    """The wrist position the row asks for is in the arm's reach (not in the paper's list)."""
+    nearest: int
+    """Search 3 and the cut of search 4: the top 20 % by expected distance to the goal."""
+
+
+class Outcome(StrEnum):
+    """How a testing trial ended."""
+
+    SOLVED = "solved"
+    NO_ROW = "no row left"
+    ATTRACTOR_OUT_OF_REACH = "attractor out of reach"
+    STEP_LIMIT = "step limit"
+    INVALID = "invalid"
+    """The simulation diverged; the trial counts for nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class StepRecord:
+    """One step of a testing trial: a row was chosen, tried and judged.
+
+    Args:
+        number: 1, 2, 3, ... within the trial.
+        clock: robot seconds when the step ended.
+        survivors: rows left by each search.
+        row: the affordance chosen, with its counters before the step.
+        placing: the position wrist that went before.
+        execution: the exploratory behavior; None when lowering the tool was blocked.
+        start: observation before the exploratory behavior (before the placing when blocked).
+        end: observation after it.
+        expected: the movement the row predicts.
+        seen: the movement observed.
+        replicated: whether `seen` counts as a success of the row.
+    """
+
+    number: int
+    clock: float
+    survivors: Survivors
+    row: Affordance
+    placing: Execution
+    execution: Execution | None
+    start: Observation
+    end: Observation
+    expected: Movement
+    seen: Movement
+    replicated: bool
+
+    @property
+    def times_used_after(self) -> int:
+        """The row's counter of uses after this step."""
+        return self.row.times_used + 1
+
+    @property
+    def times_successful_after(self) -> int:
+        """The row's counter of successes after this step."""
+        return self.row.times_successful + int(self.replicated)
+
+    @property
+    def died(self) -> bool:
+        """This step took the row's probability to 1/2 or below, out of further consideration."""
+        return 2 * self.times_successful_after <= self.times_used_after
+
+
+@dataclass(frozen=True, slots=True)
+class TrialEnd:
+    """The end of a testing trial.
+
+    Args:
+        outcome: how it ended.
+        steps: how many steps were taken.
+        clock: robot seconds it took.
+        last_survivors: rows left by each search at the query that found none, else None.
+    """
+
+    outcome: Outcome
+    steps: int
+    clock: float
+    last_survivors: Survivors | None = None

@@ -1,0 +1,42 @@
+"""The errors a user can cause, each with the exit code the command line gives it.
+
+Every message is one line that names the value, the place and the remedy. Anything that is not
+an ``AffcliError`` is a bug and keeps its traceback.
+"""
+
+
+class AffcliError(Exception):
+    """Base of every error that a user can cause and mend."""
+
+    exit_code = 1
+
+
+class UsageError(AffcliError):
+    """The command asks for something that does not exist (a tool, a goal, a run)."""
+
+    exit_code = 2
+
+
+class DatabaseError(AffcliError):
+    """The database cannot be opened, read, written or migrated."""
+
+    exit_code = 3
+
+
+class BadInputError(AffcliError):
+    """A value (number, name, file content) lies outside what it may be."""
+
+    exit_code = 4
+
+
+class SimulationDivergedError(AffcliError):
+    """The physics produced a number that is not finite; the behavior counts for nothing."""
+
+    exit_code = 1
+
+
+def one_line(text: object) -> str:
+    """Return `text` as one printable line, so that an error can quote what a user wrote."""
+    plain = str(text)
+    shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in plain)
+    return shown if len(shown) <= 200 else shown[:197] + "..."

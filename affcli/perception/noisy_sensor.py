@@ -1,0 +1,67 @@
+"""A sensor that knows the exact positions and adds noise to them."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from affcli.core.geometry import Point
+from affcli.core.observation import Observation
+from affcli.core.scene import Scene
+from affcli.core.task import GoalRegion
+
+
+@dataclass(frozen=True, slots=True)
+class SensorSettings:
+    """Standard deviations of the Gaussian noise of one observation."""
+
+    position_noise: float = 0.06
+    """On x and y of attractor, wrist and goal, each drawn by itself (in)."""
+    color_noise: float = 2.0
+    """On each colour component (0 to 255)."""
+
+
+class NoisySensor:
+    """The observation vector of §5.2 from the true scene plus seeded Gaussian noise.
+
+    Z is exact: the calibrated camera maps every pixel to the plane of the table (§4), so o3 and o6
+    are 0 whatever the noise.
+
+    Args:
+        look: gives the scene of this moment.
+        settings: how noisy.
+        rng: where the noise comes from.
+    """
+
+    def __init__(
+        self, look: Callable[[], Scene], settings: SensorSettings, rng: np.random.Generator
+    ) -> None:
+        self._look = look
+        self._settings = settings
+        self._rng = rng
+
+    def observe(self) -> Observation:
+        """Return the observation vector of this moment."""
+        scene = self._look()
+        noise = self._rng.standard_normal(10).tolist()
+        px, py, wx, wy = (self._settings.position_noise * n for n in noise[:4])
+        x, y = scene.attractor.x + px, scene.attractor.y + py
+        clean = (*scene.attractor_color, *scene.tool.color)
+        tints = (
+            min(255.0, max(0.0, component + self._settings.color_noise * n))
+            for component, n in zip(clean, noise[4:], strict=True)
+        )
+        dx, dy = x - (scene.wrist.x + wx), y - (scene.wrist.y + wy)
+        return Observation(x, y, 0.0, dx, dy, 0.0, *tints)
+
+    def observe_goal(self) -> GoalRegion:
+        """Return the goal region with noise on its centre; its size is as painted.
+
+        Raises:
+            LookupError: there is no goal on the table.
+        """
+        goal = self._look().goal
+        if goal is None:
+            raise LookupError("there is no goal region on the table")
+        gx, gy = (self._settings.position_noise * self._rng.standard_normal(2)).tolist()
+        return replace(goal, center=Point(goal.center.x + gx, goal.center.y + gy))

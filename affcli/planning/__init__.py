@@ -1,0 +1,1 @@
+"""Which row of the affordance table to use next."""

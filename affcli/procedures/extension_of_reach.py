@@ -1,0 +1,124 @@
+"""Solving a tool-using task with the affordance table: the procedure of Fig. 7 (§6.2, §7)."""
+
+from collections.abc import Generator
+from dataclasses import dataclass
+
+from affcli.core.affordance import replicates
+from affcli.core.affordance_table import AffordanceTable
+from affcli.core.behavior import POSITION_WRIST, BehaviorCall, Execution, ExecutionStatus
+from affcli.core.observation import Observation, movement
+from affcli.core.ports import Experimenter, Robot, Sensor
+from affcli.core.task import GoalRegion
+from affcli.core.trial import Outcome, StepRecord, TrialEnd
+from affcli.errors import SimulationDivergedError
+from affcli.planning.nested_query import choose_row
+
+
+@dataclass(frozen=True, slots=True)
+class TrialLimits:
+    """When a trial is given up."""
+
+    max_steps: int = 32
+    """Steps after which the experimenter ends the trial; the paper names no limit."""
+
+
+def extension_of_reach(
+    robot: Robot,
+    sensor: Sensor,
+    experimenter: Experimenter,
+    table: AffordanceTable,
+    binding: BehaviorCall,
+    limits: TrialLimits,
+) -> Generator[StepRecord, None, TrialEnd]:
+    """Bring the attractor over the goal region, one behavior at a time.
+
+    Observe; done if the attractor is over the goal; choose a row by the nested searches; position
+    the wrist so that the attractor stands to it as in the row's O^s; run the row's behavior;
+    observe; count the use of the row and whether it replicated; again.
+
+    The flowchart itself (Fig. 7) is lost with the paper's figures; this follows §5 and §6.2.
+
+    Args:
+        robot, sensor, experimenter: the world as the robot meets it.
+        table: what the robot learned. Its counters are updated as the trial goes on (§3.2).
+        binding: the binding behavior, executed once at the start.
+        limits: when to give up.
+
+    Yields:
+        A record of each step, after the counters were updated.
+
+    Returns:
+        How the trial ended.
+    """
+    try:
+        return (yield from _steps(robot, sensor, experimenter, table, binding, limits))
+    except SimulationDivergedError:
+        # Kept as a trial of its own kind, which counts neither as solved nor as failed.
+        return TrialEnd(Outcome.INVALID, steps=0, clock=robot.clock)
+
+
+def _steps(
+    robot: Robot,
+    sensor: Sensor,
+    experimenter: Experimenter,
+    table: AffordanceTable,
+    binding: BehaviorCall,
+    limits: TrialLimits,
+) -> Generator[StepRecord, None, TrialEnd]:
+    """Yield the steps of a trial until it ends (see `extension_of_reach`)."""
+    robot.execute(binding, None)
+    seen = sensor.observe()
+    goal = sensor.observe_goal()
+    for number in range(1, limits.max_steps + 1):
+        if goal.contains(seen.object_position):
+            return TrialEnd(Outcome.SOLVED, number - 1, robot.clock)
+        if experimenter.attractor_out_of_reach():
+            return TrialEnd(Outcome.ATTRACTOR_OUT_OF_REACH, number - 1, robot.clock)
+        step = _step(number, robot, sensor, table, seen, goal)
+        if isinstance(step, TrialEnd):
+            return step
+        yield step
+        seen = step.end
+    solved = goal.contains(seen.object_position)
+    outcome = Outcome.SOLVED if solved else Outcome.STEP_LIMIT
+    return TrialEnd(outcome, limits.max_steps, robot.clock)
+
+
+def _step(
+    number: int,
+    robot: Robot,
+    sensor: Sensor,
+    table: AffordanceTable,
+    seen: Observation,
+    goal: GoalRegion,
+) -> StepRecord | TrialEnd:
+    """Choose a row, try it, judge it, count it; or end the trial when no row is left."""
+    choice = choose_row(table, seen, goal, robot)
+    if choice.position is None:
+        return TrialEnd(Outcome.NO_ROW, number - 1, robot.clock, choice.survivors)
+    row = table.row(choice.position)
+    offset = row.start.wrist_to_object
+    placing = robot.execute(BehaviorCall.of(POSITION_WRIST, {"x": offset.x, "y": offset.y}), seen)
+    execution: Execution | None = None
+    start = end = seen
+    if placing.status is ExecutionStatus.DONE:
+        start = sensor.observe()
+        execution = robot.execute(row.exploratory, start)
+        end = sensor.observe()
+    expected, observed = row.expected_movement, movement(start, end)
+    # A blocked placing moves nothing, and a movement of zero never replicates.
+    success = replicates(expected, observed)
+    table.count_use(choice.position, success=success)
+    return StepRecord(
+        number=number,
+        clock=robot.clock,
+        survivors=choice.survivors,
+        row=row,
+        placing=placing,
+        execution=execution,
+        start=start,
+        end=end,
+        expected=expected,
+        seen=observed,
+        replicated=success,
+    )

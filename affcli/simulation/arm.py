@@ -1,0 +1,156 @@
+"""Kinematics of the five-axis arm with its wrist perpendicular to the table (§4, §5).
+
+Joints: waist (about z), shoulder, elbow, wrist pitch (all about the same horizontal axis) and wrist
+roll. The wrist perpendicular to the table fixes the pitch; the roll undoes the waist, so the tool
+keeps its orientation in the table frame.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+
+from affcli.core.geometry import Point
+from affcli.core.workspace import ArmGeometry
+from affcli.errors import BadInputError
+
+WRIST_PITCH_MAX = math.radians(110.0)
+"""Published range of the arm's fourth axis, to both sides."""
+
+
+@dataclass(frozen=True, slots=True)
+class JointAngles:
+    """The five joint angles (rad).
+
+    waist: 0 straight ahead (+y), positive to the robot's left. shoulder: direction of the upper arm
+    over the horizontal. elbow: bend of the forearm below the upper arm's direction. pitch: turn of
+    the hand from the forearm's direction, positive downward. roll: about the vertical hand.
+    """
+
+    waist: float
+    shoulder: float
+    elbow: float
+    pitch: float
+    roll: float
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """The wrist positions the arm can hold at one height: part of a ring about the shoulder (in)."""
+
+    inner: float
+    outer: float
+    waist_max: float
+
+    def holds(self, point: Point) -> bool:
+        """Tell whether the ring holds `point` (in, table frame)."""
+        radius = math.hypot(point.x, point.y)
+        bearing = abs(math.atan2(-point.x, point.y))
+        return self.inner <= radius <= self.outer and bearing <= self.waist_max
+
+
+def wrist_position(arm: ArmGeometry, joints: JointAngles) -> tuple[float, float, float]:
+    """Forward kinematics: return the flange position (x, y, z) (in, table frame)."""
+    forearm = joints.shoulder - joints.elbow
+    hand = forearm - joints.pitch
+    radius = (
+        arm.upper_arm * math.cos(joints.shoulder)
+        + arm.forearm * math.cos(forearm)
+        + arm.wrist_to_flange * math.cos(hand)
+    )
+    z = (
+        arm.shoulder_height
+        + arm.upper_arm * math.sin(joints.shoulder)
+        + arm.forearm * math.sin(forearm)
+        + arm.wrist_to_flange * math.sin(hand)
+    )
+    return -radius * math.sin(joints.waist), radius * math.cos(joints.waist), z
+
+
+def joint_angles(arm: ArmGeometry, wrist: Point, height: float) -> JointAngles | None:
+    """Inverse kinematics, elbow up, the hand straight down.
+
+    Args:
+        arm: links and joint limits.
+        wrist: where the flange is to be on the table plane (in, table frame).
+        height: of the flange over the table (in).
+
+    Returns:
+        The joint angles, or None when no angles within the limits bring the flange there.
+    """
+    radius = math.hypot(wrist.x, wrist.y)
+    drop = height + arm.wrist_to_flange - arm.shoulder_height
+    bend = (radius**2 + drop**2 - arm.upper_arm**2 - arm.forearm**2) / (
+        2 * arm.upper_arm * arm.forearm
+    )
+    if not -1.0 <= bend <= 1.0 + 1e-12:
+        return None
+    elbow = math.acos(min(1.0, bend))
+    shoulder = math.atan2(drop, radius) + math.atan2(
+        arm.forearm * math.sin(elbow), arm.upper_arm + arm.forearm * math.cos(elbow)
+    )
+    pitch = math.pi / 2 + shoulder - elbow
+    waist = math.atan2(-wrist.x, wrist.y)
+    within = (
+        elbow <= math.radians(arm.elbow_max_degrees) + 1e-12
+        and math.radians(arm.shoulder_min_degrees) <= shoulder
+        and shoulder <= math.radians(arm.shoulder_max_degrees)
+        and abs(pitch) <= WRIST_PITCH_MAX
+        and abs(waist) <= math.radians(arm.waist_max_degrees) + 1e-12
+    )
+    return JointAngles(waist, shoulder, elbow, pitch, -waist) if within else None
+
+
+@lru_cache(maxsize=64)
+def reach_at(arm: ArmGeometry, height: float) -> Reach:
+    """Return the ring of wrist positions with the flange at `height` over the table (in).
+
+    Links and elbow give the ring in closed form; shoulder and pitch limits may narrow it, which is
+    found by bisection on the inverse kinematics.
+
+    Raises:
+        BadInputError: the arm reaches nothing at this height.
+    """
+    drop = height + arm.wrist_to_flange - arm.shoulder_height
+    straight = arm.upper_arm + arm.forearm
+    folded = math.sqrt(
+        arm.upper_arm**2
+        + arm.forearm**2
+        + 2 * arm.upper_arm * arm.forearm * math.cos(math.radians(arm.elbow_max_degrees))
+    )
+    if abs(drop) >= straight:
+        raise BadInputError(
+            f"arm: links of {arm.upper_arm} + {arm.forearm} in cannot hold the flange at {height} "
+            f"in from a shoulder at {arm.shoulder_height} in; lower arm.shoulder_height"
+        )
+    outer = math.sqrt(straight**2 - drop**2)
+    inner = math.sqrt(max(0.0, folded**2 - drop**2))
+
+    def possible(radius: float) -> bool:
+        return joint_angles(arm, Point(0.0, radius), height) is not None
+
+    grid = [inner + (outer - inner) * i / 64 for i in range(65)]
+    inside = [radius for radius in grid if possible(radius)]
+    if not inside:
+        raise BadInputError(
+            f"arm: the joint limits leave no reach with the flange at {height} in; widen "
+            "arm.elbow_max_degrees, arm.shoulder_min_degrees or arm.shoulder_max_degrees"
+        )
+    return Reach(
+        _bisect(possible, inner, inside[0]),
+        _bisect(possible, outer, inside[-1]),
+        math.radians(arm.waist_max_degrees),
+    )
+
+
+def _bisect(possible: Callable[[float], bool], outside: float, inside: float) -> float:
+    """Return the edge of what is possible between a radius outside and one inside (in)."""
+    if possible(outside):
+        return outside
+    for _ in range(60):
+        middle = 0.5 * (outside + inside)
+        if possible(middle):
+            inside = middle
+        else:
+            outside = middle
+    return inside

@@ -1,0 +1,88 @@
+"""When does a tool that moves straight first touch the puck? In closed form, without an engine."""
+
+import math
+from collections.abc import Sequence
+
+from affcli.core.geometry import ConvexPolygon, Point
+
+
+def travel_to_contact(
+    parts: Sequence[ConvexPolygon], direction: Point, length: float, center: Point, radius: float
+) -> float | None:
+    """Return how far the parts travel before they touch a disc at rest.
+
+    Args:
+        parts: convex parts of the tool where the motion starts (in, table frame).
+        direction: unit vector of the motion.
+        length: of the motion (in).
+        center: of the disc (in, table frame).
+        radius: of the disc (in).
+
+    Returns:
+        The distance (in), 0 when they touch already, None when they never do.
+    """
+    nearest: float | None = None
+    for part in parts:
+        if _swept_box_misses(part, direction, length, center, radius):
+            continue
+        travel = _part_travel(part, direction, center, radius)
+        if travel is not None and travel <= length and (nearest is None or travel < nearest):
+            nearest = travel
+    return nearest
+
+
+def _swept_box_misses(
+    part: ConvexPolygon, direction: Point, length: float, center: Point, radius: float
+) -> bool:
+    """Tell whether the bounding box of the swept part, grown by `radius`, leaves `center` out."""
+    dx, dy = direction.x * length, direction.y * length
+    xs = [v.x for v in part.vertices]
+    ys = [v.y for v in part.vertices]
+    return (
+        center.x < min(xs) + min(dx, 0.0) - radius
+        or center.x > max(xs) + max(dx, 0.0) + radius
+        or center.y < min(ys) + min(dy, 0.0) - radius
+        or center.y > max(ys) + max(dy, 0.0) + radius
+    )
+
+
+def _part_travel(
+    part: ConvexPolygon, direction: Point, center: Point, radius: float
+) -> float | None:
+    """Return when the outline of the part, grown by `radius`, first passes over `center` (in)."""
+    if part.distance(center) <= radius:
+        return 0.0
+    found: list[float] = []
+    for a, b in part.edges():
+        found += _edge_travel(a, b, direction, center, radius)
+        found += _corner_travel(a, direction, center, radius)
+    return min(found, default=None)
+
+
+def _edge_travel(
+    a: Point, b: Point, direction: Point, center: Point, radius: float
+) -> list[float]:
+    """Return the travel at which the edge, moved out by `radius`, meets the centre, if it does."""
+    ex, ey = b.x - a.x, b.y - a.y
+    length = math.hypot(ex, ey)
+    nx, ny = ey / length, -ex / length
+    closing = direction.x * nx + direction.y * ny
+    if closing <= 0.0:
+        return []
+    px, py = center.x - a.x, center.y - a.y
+    travel = (px * nx + py * ny - radius) / closing
+    if travel < 0.0:
+        return []
+    along = ((px - travel * direction.x) * ex + (py - travel * direction.y) * ey) / length
+    return [travel] if 0.0 <= along <= length else []
+
+
+def _corner_travel(corner: Point, direction: Point, center: Point, radius: float) -> list[float]:
+    """Return the travel at which the corner comes within `radius` of the centre, if it does."""
+    px, py = center.x - corner.x, center.y - corner.y
+    along = px * direction.x + py * direction.y
+    discriminant = along**2 - (px**2 + py**2 - radius**2)
+    if discriminant < 0.0:
+        return []
+    travel = along - math.sqrt(discriminant)
+    return [travel] if travel >= 0.0 else []

@@ -1,0 +1,138 @@
+"""Straight wrist motion in steps of the physics clock.
+
+Every length is kept on a grid of 2^-20 in (far below the arm's encoders) and every velocity times
+the time step of 2^-9 s lies on that grid, so sums of displacements are exact in binary. That is
+why a push can be started a moment before contact and still be the same to the last bit.
+"""
+
+import math
+from itertools import pairwise
+from typing import NamedTuple
+
+from affcli.core.geometry import Point
+from affcli.core.workspace import ArmGeometry
+from affcli.simulation.arm import Reach
+
+STEP = 2.0**-9
+"""Physics time step (s): at 5 in/s the tool moves 0.0098 in a step, the most it can penetrate."""
+
+GRID = 2.0**-20
+"""Resolution of the wrist's position (in)."""
+
+
+class Stretch(NamedTuple):
+    """`steps` physics steps at one speed (in/s)."""
+
+    speed: float
+    steps: int
+
+
+def on_grid(length: float) -> float:
+    """Round a length to the wrist's resolution (in)."""
+    return round(length / GRID) * GRID
+
+
+def trapezoid(distance: float, speed: float, acceleration: float) -> tuple[Stretch, ...]:
+    """Return the stretches that cover `distance` exactly, speeding up, cruising, slowing down.
+
+    Args:
+        distance: how far (in), on the grid; 0 gives no stretches.
+        speed: cruise speed (in/s).
+        acceleration: in/s^2, rounded so that a ramp is a whole number of steps.
+
+    A remainder shorter than one cruise step is covered by one slower step before slowing down.
+    """
+    ramp_steps = max(1, round(speed / (acceleration * STEP)))
+    gain = max(1, round(speed / ramp_steps * 2**10)) / 2**10
+    ramp_steps = min(round(speed / gain), math.isqrt(int(distance / (gain * STEP))))
+    ramp = [gain * (k + 0.5) for k in range(ramp_steps)]
+    rest = distance - gain * STEP * ramp_steps**2
+    top = gain * ramp_steps if ramp_steps else speed
+    cruise = int(rest / (top * STEP))
+    remainder = (rest - cruise * top * STEP) / STEP
+    up = [Stretch(v, 1) for v in ramp]
+    middle = [Stretch(top, cruise)] if cruise else []
+    tail = [Stretch(remainder, 1)] if remainder else []
+    return (*up, *middle, *tail, *reversed(up))
+
+
+def duration(stretches: tuple[Stretch, ...]) -> float:
+    """Return how long the stretches take (s)."""
+    return sum(s.steps for s in stretches) * STEP
+
+
+def travelled(stretches: tuple[Stretch, ...], steps: int) -> float:
+    """Return the distance covered after the first `steps` physics steps (in), exact."""
+    distance = 0.0
+    for stretch in stretches:
+        taken = min(steps, stretch.steps)
+        distance += stretch.speed * STEP * taken
+        steps -= taken
+    return distance
+
+
+def skip(stretches: tuple[Stretch, ...], distance: float) -> tuple[float, tuple[Stretch, ...]]:
+    """Drop the steps that surely end within `distance`.
+
+    Returns:
+        How far the dropped steps go (in, exact), and the stretches that are left.
+    """
+    gone = 0.0
+    for i, stretch in enumerate(stretches):
+        stride = stretch.speed * STEP
+        if gone + stride * stretch.steps <= distance:
+            gone += stride * stretch.steps
+            continue
+        steps = int((distance - gone) / stride)
+        left = (Stretch(stretch.speed, stretch.steps - steps), *stretches[i + 1 :])
+        return gone + stride * steps, left
+    return gone, ()
+
+
+def trapezoid_time(distance: float, speed: float, acceleration: float) -> float:
+    """Return the time of a trapezoid of speed over `distance` (s), for moves without contact."""
+    if distance >= speed * speed / acceleration:
+        return distance / speed + speed / acceleration
+    return 2.0 * math.sqrt(distance / acceleration)
+
+
+def stop_at_edge(reach: Reach, start: Point, end: Point) -> Point:
+    """Return how far a straight motion from `start` toward `end` gets before the reach ends.
+
+    Args:
+        reach: where the wrist can be.
+        start: within the reach (in, table frame).
+        end: where the motion leads.
+    """
+    length = math.dist(start, end)
+    if length == 0.0:
+        return end
+    ux, uy = (end.x - start.x) / length, (end.y - start.y) / length
+    crossings = [0.0, *sorted(_crossings(reach, start, ux, uy, length)), length]
+    free = 0.0
+    for a, b in pairwise(crossings):
+        middle = 0.5 * (a + b)
+        if b > a and not reach.holds(Point(start.x + middle * ux, start.y + middle * uy)):
+            break
+        free = b
+    if free == length:
+        return end
+    steps = math.floor(free / GRID) * GRID
+    return Point(on_grid(start.x + steps * ux), on_grid(start.y + steps * uy))
+
+
+def _crossings(reach: Reach, start: Point, ux: float, uy: float, length: float) -> list[float]:
+    """Return where the line from `start` along (ux, uy) crosses an edge of the reach (in)."""
+    found = []
+    along = start.x * ux + start.y * uy
+    for radius in (reach.inner, reach.outer):
+        discriminant = along**2 - (start.x**2 + start.y**2 - radius**2)
+        if discriminant >= 0.0:
+            root = math.sqrt(discriminant)
+            found += [-along - root, -along + root]
+    for side in (-1.0, 1.0):
+        ex, ey = side * math.sin(reach.waist_max), math.cos(reach.waist_max)
+        across = ux * ey - uy * ex
+        if across != 0.0:
+            found.append(-(start.x * ey - start.y * ex) / across)
+    return [t for t in found if 0.0 < t < length]

@@ -1,0 +1,255 @@
+"""A second opinion on pushing: a quasi-static solver that shares no code with the simulation.
+
+A disc presses evenly on the table; a tool of convex parts moves straight and pushes it. Nothing has
+inertia: at each instant the table's friction balances the contact forces. Lengths are in inches,
+forces in units of the table's friction (mu m g) and torques in units of that times the radius.
+
+**The table.** A disc that moves at v and turns at w about its centre turns about a point at the
+distance d = |v| / |w| from its centre. In polar coordinates about that point every element of area
+moves along the angle, so the integral over the distance is elementary and the one over the angle is
+done by the trapezoidal rule: `limit_surface`. No ellipsoid is fitted.
+
+**One contact.** It lies on the rim at -R n, with n the unit normal into the disc and t = n turned
+left. A contact force N (n + f t) is, by symmetry, met by a velocity along itself, v = v_n (1, f),
+and by the turning s = R |w| / |v| at which torque / force of the limit surface is |f| / sqrt(1 + f^2).
+The rim at the contact then moves by v_n K(f) along t, with K(f) = f + sqrt(1 + f^2) s(f), which
+grows with f. So the modes are solved outright: the contact sticks with the f for which K(f) is the
+tool's ratio of tangential to normal velocity, if that |f| <= mu; otherwise it slides with f = +-mu.
+
+**Two contacts.** If either of them alone would leave the other free, it alone acts. Otherwise both
+stay closed; then the disc can only move as the tool does, without turning.
+
+**Time.** The tool advances by a small stride; the overlap that results is the normal displacement
+of the stride. Strides and quadrature nodes are chosen by the tests of convergence.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from affcli.core.geometry import ConvexPolygon, Point, Pose
+
+Array: TypeAlias = NDArray[np.float64]
+
+STRIDE = 2e-3
+"""Travel of the tool in a step (in)."""
+NODES = 256
+"""Angles of the quadrature."""
+TURNINGS = 2048
+"""Entries of the table from tangential velocity to contact force."""
+CLOSED = 1e-9
+"""Overlaps below this (in) do not count: far above rounding, far below a stride."""
+
+
+@dataclass(frozen=True, slots=True)
+class Push:
+    """One straight push.
+
+    Args:
+        parts: convex parts of the tool where the motion starts (in, table frame).
+        direction: unit vector of the motion.
+        length: of the motion (in).
+        puck: pose of the disc at rest before it (in, rad).
+    """
+
+    parts: tuple[ConvexPolygon, ...]
+    direction: Point
+    length: float
+    puck: Pose
+
+
+def limit_surface(distance: float, nodes: int = NODES) -> tuple[float, float]:
+    """Return force and torque that turn the disc about a point at `distance` radii of its centre.
+
+    Force in units of mu m g, torque about the centre in units of mu m g R.
+    """
+    if distance < 1.0:
+        angle = (np.arange(nodes) + 0.5) * (2.0 * np.pi / nodes)
+        rim = distance * np.cos(angle) + np.sqrt(1.0 - (distance * np.sin(angle)) ** 2)
+        force = float(np.mean(np.cos(angle) * rim**2))
+        return force, float(np.mean(rim**3)) * 2.0 / 3.0 - distance * force
+    # Outside, the substitution sin(angle) = sin(theta) / distance takes the roots out of the ends.
+    theta = ((np.arange(nodes) + 0.5) / nodes - 0.5) * np.pi
+    cos_angle = np.sqrt(1.0 - (np.sin(theta) / distance) ** 2)
+    force = 2.0 * float(np.mean(cos_angle * np.cos(theta) ** 2))
+    return force, 2.0 / 3.0 / distance * float(np.mean(np.cos(theta) ** 4 / cos_angle))
+
+
+@dataclass(frozen=True, slots=True)
+class ContactLaw:
+    """What one contact does, as tables over growing f (see the module's docstring).
+
+    Args:
+        force: f, tangential over normal force; from -mu to mu.
+        rim: K(f), tangential over normal velocity of the rim at the contact.
+        turning: -R w / v_n.
+    """
+
+    force: Array
+    rim: Array
+    turning: Array
+
+    @classmethod
+    def of(cls, friction: float, nodes: int = NODES) -> "ContactLaw":
+        """Return the law of a contact with the coefficient `friction`."""
+        turning = np.tan(np.linspace(0.0, 0.5 * np.pi, TURNINGS, endpoint=False))
+        pairs = [limit_surface(1.0 / s, nodes) if s else (1.0, 0.0) for s in turning]
+        lever = np.array([torque / force for force, torque in pairs])
+        needed = np.searchsorted(lever, min(friction, 1e6) / np.hypot(1.0, friction)) + 1
+        lever, turning = lever[:needed], turning[:needed]
+        force = lever / np.sqrt(1.0 - lever**2)
+        turn = np.hypot(1.0, force) * turning
+        end = np.interp(friction, force, turn)
+        force = np.append(force[force < friction], friction)
+        turn = np.append(turn[: force.size - 1], end)
+        force = np.concatenate([-force[:0:-1], force])
+        turn = np.concatenate([-turn[:0:-1], turn])
+        return cls(force, force + turn, turn)
+
+    def __call__(self, normal: Array, tangential: Array) -> tuple[Array, Array]:
+        """Return tangential displacement of the centre and clockwise turn of the rim (in, in).
+
+        Args:
+            normal: displacement of the tool along n, > 0 (in).
+            tangential: displacement of the tool along t (in).
+        """
+        # np.interp holds the ends: beyond them the contact slides.
+        ratio = tangential / normal
+        force = np.interp(ratio, self.rim, self.force)
+        return normal * force, normal * np.interp(ratio, self.rim, self.turning)
+
+
+class _Tools:
+    """The parts of all tools as one array of edges, padded with points far away."""
+
+    def __init__(self, pushes: Sequence[Push]) -> None:
+        parts = max(len(push.parts) for push in pushes)
+        corners = max(len(part.vertices) for push in pushes for part in push.parts)
+        self._start = np.full((len(pushes), parts, corners, 2), 1e6)
+        for i, push in enumerate(pushes):
+            for j, part in enumerate(push.parts):
+                self._start[i, j] = part.vertices[-1]
+                self._start[i, j, : len(part.vertices)] = part.vertices
+        self._edge = np.roll(self._start, -1, axis=2) - self._start
+        square = np.sum(self._edge**2, axis=3)
+        self._scale = np.divide(1.0, square, out=np.zeros_like(square), where=square > 0.0)
+
+    def contacts(self, rows: NDArray[np.intp], at: Array) -> tuple[Array, Array]:
+        """Return, for each part, the distance of the points `at` and the unit normal toward them.
+
+        The points lie outside: the disc's centre never comes within a radius of a part.
+        """
+        from_start = at[:, None, None, :] - self._start[rows]
+        edge = self._edge[rows]
+        along = np.clip(np.sum(from_start * edge, axis=3) * self._scale[rows], 0.0, 1.0)
+        gap = from_start - along[..., None] * edge
+        square = np.sum(gap**2, axis=3)
+        nearest = np.argmin(square, axis=2)[..., None]
+        distance = np.sqrt(np.take_along_axis(square, nearest, axis=2)[..., 0])
+        normal = np.take_along_axis(gap, nearest[..., None], axis=2)[:, :, 0] / distance[..., None]
+        return distance, normal
+
+
+def push_all(
+    pushes: Sequence[Push],
+    radius: float,
+    friction: float,
+    stride: float = STRIDE,
+    nodes: int = NODES,
+) -> Array:
+    """Return where the disc of each push comes to rest: (N, 3) array of x, y (in), angle (rad).
+
+    Args:
+        pushes: any number of pushes; they do not know each other.
+        radius: of the disc (in).
+        friction: Coulomb coefficient between the tool and the rim.
+        stride: travel of the tool in a step (in).
+        nodes: angles of the quadrature.
+
+    Raises:
+        ArithmeticError: three parts hold the disc at once, which this solver does not know.
+    """
+    law = ContactLaw.of(friction, nodes)
+    tools = _Tools(pushes)
+    pucks = np.array([push.puck for push in pushes])
+    direction = np.array([push.direction for push in pushes])
+    length = np.array([push.length for push in pushes])
+    steps = int(np.ceil(length.max() / stride - 1e-9))
+    gone = np.zeros(len(pushes))
+    for step in range(1, steps + 1):
+        ahead = np.minimum(step * stride, length)
+        move = (ahead - gone)[:, None] * direction
+        gone = ahead
+        # In the tool's frame the tool rests and the disc drifts back.
+        at = pucks[:, :2] - gone[:, None] * direction
+        rows = np.arange(len(pushes))
+        distance, normal = tools.contacts(rows, at)
+        hit = np.flatnonzero(radius - distance.min(axis=1) > CLOSED)
+        if hit.size:
+            overlap = radius - distance[hit]
+            pucks[hit] += _respond(tools, law, hit, at[hit], overlap, normal[hit], move[hit], radius)
+    return pucks
+
+
+def _respond(
+    tools: _Tools,
+    law: ContactLaw,
+    rows: NDArray[np.intp],
+    at: Array,
+    overlap: Array,
+    normal: Array,
+    move: Array,
+    radius: float,
+) -> Array:
+    """Return how the touched discs move and turn in this step: (H, 3)."""
+    first = np.argmax(overlap, axis=1)
+    answer = _one_contact(law, first, overlap, normal, move, radius)
+    left = radius - tools.contacts(rows, at + answer[:, :2])[0]
+    stuck = np.flatnonzero(left.max(axis=1) > CLOSED)
+    if stuck.size == 0:
+        return answer
+    rows, at, overlap, normal, move = (a[stuck] for a in (rows, at, overlap, normal, move))
+    first, second = first[stuck], np.argmax(left[stuck], axis=1)
+    # The other part alone, if it touches already and leaves the first one free.
+    touching = overlap[np.arange(stuck.size), second] > CLOSED
+    alone = _one_contact(law, second, np.maximum(overlap, CLOSED), normal, move, radius)
+    left = radius - tools.contacts(rows, at + alone[:, :2])[0]
+    free = touching & (left.max(axis=1) <= CLOSED)
+    both = _two_contacts(first, second, overlap, normal)
+    answer[stuck] = np.where(free[:, None], alone, both)
+    left = radius - tools.contacts(rows, at + answer[stuck, :2])[0]
+    if np.any(left.max(axis=1) > 1e-4):
+        raise ArithmeticError(f"{left.max():.6f} in of overlap left: three parts hold the disc")
+    return answer
+
+
+def _one_contact(
+    law: ContactLaw,
+    part: NDArray[np.intp],
+    overlap: Array,
+    normal: Array,
+    move: Array,
+    radius: float,
+) -> Array:
+    """Return how the discs move and turn when only the contact with `part` acts: (H, 3)."""
+    each = np.arange(part.size)
+    n = normal[each, part]
+    t = np.stack([-n[:, 1], n[:, 0]], axis=1)
+    depth = overlap[each, part]
+    aside, turned = law(depth, np.sum(move * t, axis=1))
+    shift = depth[:, None] * n + aside[:, None] * t
+    return np.column_stack([shift, -turned / radius])
+
+
+def _two_contacts(
+    first: NDArray[np.intp], second: NDArray[np.intp], overlap: Array, normal: Array
+) -> Array:
+    """Return how the discs move when both contacts stay closed: (H, 3), without turning."""
+    each = np.arange(first.size)
+    rows = np.stack([normal[each, first], normal[each, second]], axis=1)
+    depth = np.stack([overlap[each, first], overlap[each, second]], axis=1)
+    shift = np.linalg.solve(rows, depth[..., None])[..., 0]
+    return np.column_stack([shift, np.zeros(first.size)])
