@@ -35,8 +35,8 @@ class SimulationDivergedError(AffcliError):
     exit_code = 1
 
 
-def one_line(text: object) -> str:
+def one_line(text: object, limit: int = 200) -> str:
     """Return `text` as one printable line, so that an error can quote what a user wrote."""
-    plain = str(text)
-    shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in plain)
-    return shown if len(shown) <= 200 else shown[:197] + "..."
+    start = str(text)[: limit + 1]
+    shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in start)
+    return shown if len(shown) <= limit else shown[: limit - 3] + "..."

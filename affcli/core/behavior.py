@@ -73,7 +73,7 @@ class ExecutionStatus(StrEnum):
     TRUNCATED = "truncated"
     """Met the edge of the arm's reach and stopped there."""
     BLOCKED = "blocked"
-    """Lowering the tool would have put it on the attractor; it stays where it was."""
+    """Lowering the tool would have put it on the attractor; it stays lifted above it."""
     OUT_OF_REACH = "out of reach"
     """No joint angles bring the wrist there; it stays where it was."""
 

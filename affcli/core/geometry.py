@@ -5,8 +5,8 @@ from the robot, z up. Inches. Polygons list their vertices counter-clockwise.
 """
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 
@@ -36,9 +36,21 @@ class ConvexPolygon:
 
     Args:
         vertices: at least three (x, y) pairs, in.
+
+    Attributes:
+        edges: the edges as (start, end), in order.
+        bounds: left, bottom, right and top of the bounding box (in).
     """
 
     vertices: tuple[Point, ...]
+    edges: tuple[tuple[Point, Point], ...] = field(init=False, repr=False, compare=False)
+    bounds: tuple[float, float, float, float] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        following = self.vertices[1:] + self.vertices[:1]
+        object.__setattr__(self, "edges", tuple(zip(self.vertices, following, strict=True)))
+        xs, ys = zip(*self.vertices, strict=True)
+        object.__setattr__(self, "bounds", (min(xs), min(ys), max(xs), max(ys)))
 
     @classmethod
     def box(cls, left: float, bottom: float, right: float, top: float) -> "ConvexPolygon":
@@ -49,11 +61,7 @@ class ConvexPolygon:
     @property
     def area(self) -> float:
         """Signed area by the shoelace formula (in^2); positive when counter-clockwise."""
-        return 0.5 * sum(a.x * b.y - b.x * a.y for a, b in self.edges())
-
-    def edges(self) -> Iterable[tuple[Point, Point]]:
-        """Yield the edges as (start, end), in order."""
-        return zip(self.vertices, self.vertices[1:] + self.vertices[:1], strict=True)
+        return 0.5 * sum(a.x * b.y - b.x * a.y for a, b in self.edges)
 
     def moved(self, dx: float, dy: float) -> "ConvexPolygon":
         """Return this polygon translated by (dx, dy) (in)."""
@@ -63,7 +71,7 @@ class ConvexPolygon:
         """Return the distance from `point` to the polygon (in); 0 inside or on the edge."""
         inside = True
         nearest = math.inf
-        for a, b in self.edges():
+        for a, b in self.edges:
             ex, ey = b.x - a.x, b.y - a.y
             px, py = point.x - a.x, point.y - a.y
             if ex * py - ey * px < 0.0:
@@ -76,6 +84,17 @@ class ConvexPolygon:
 def distance_to_union(polygons: Sequence[ConvexPolygon], point: Point) -> float:
     """Return the distance from `point` to the union of `polygons` (in); 0 inside."""
     return min(polygon.distance(point) for polygon in polygons)
+
+
+def near_any(polygons: Sequence[ConvexPolygon], point: Point, radius: float) -> bool:
+    """Tell whether `point` is less than `radius` (in) from the union of `polygons`."""
+    x, y = point
+    for polygon in polygons:
+        left, bottom, right, top = polygon.bounds
+        in_box = left - radius < x < right + radius and bottom - radius < y < top + radius
+        if in_box and polygon.distance(point) < radius:
+            return True
+    return False
 
 
 def direction_degrees(dx: float, dy: float) -> float:

@@ -194,3 +194,41 @@ class TrialEnd:
     steps: int
     clock: float
     last_survivors: Survivors | None = None
+
+
+class TrialStep(NamedTuple):
+    """A step with what the robot cannot see.
+
+    Args:
+        record: what the robot did and saw.
+        truth: where the attractor truly was.
+        lost: whether the row tried was truly lost when the tool broke; None for a whole tool.
+    """
+
+    record: StepRecord
+    truth: Truth
+    lost: bool | None
+
+
+@dataclass(frozen=True, slots=True)
+class TrialRecord:
+    """A whole testing trial: what it was a function of, its steps, its end."""
+
+    spec: TrialSpec
+    steps: tuple[TrialStep, ...]
+    end: TrialEnd
+
+
+@dataclass(frozen=True, slots=True)
+class RobotRecord:
+    """The life of one robot of a reproduction: what it learned, and its testing trials.
+
+    Args:
+        robot: its number.
+        learned: for each tool the spec, the steps and the robot seconds of its learning run.
+        trials: all its testing trials.
+    """
+
+    robot: int
+    learned: tuple[tuple[LearningSpec, tuple[tuple[BabblingRecord, Truth], ...], float], ...]
+    trials: tuple[TrialRecord, ...]

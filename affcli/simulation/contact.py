@@ -12,10 +12,10 @@ def travel_to_contact(
     """Return how far the parts travel before they touch a disc at rest.
 
     Args:
-        parts: convex parts of the tool where the motion starts (in, table frame).
+        parts: convex parts of the tool (in, tool frame).
         direction: unit vector of the motion.
         length: of the motion (in).
-        center: of the disc (in, table frame).
+        center: of the disc as seen from where the tool is when the motion starts (in).
         radius: of the disc (in).
 
     Returns:
@@ -36,13 +36,12 @@ def _swept_box_misses(
 ) -> bool:
     """Tell whether the bounding box of the swept part, grown by `radius`, leaves `center` out."""
     dx, dy = direction.x * length, direction.y * length
-    xs = [v.x for v in part.vertices]
-    ys = [v.y for v in part.vertices]
+    left, bottom, right, top = part.bounds
     return (
-        center.x < min(xs) + min(dx, 0.0) - radius
-        or center.x > max(xs) + max(dx, 0.0) + radius
-        or center.y < min(ys) + min(dy, 0.0) - radius
-        or center.y > max(ys) + max(dy, 0.0) + radius
+        center.x < left + min(dx, 0.0) - radius
+        or center.x > right + max(dx, 0.0) + radius
+        or center.y < bottom + min(dy, 0.0) - radius
+        or center.y > top + max(dy, 0.0) + radius
     )
 
 
@@ -53,7 +52,7 @@ def _part_travel(
     if part.distance(center) <= radius:
         return 0.0
     found: list[float] = []
-    for a, b in part.edges():
+    for a, b in part.edges:
         found += _edge_travel(a, b, direction, center, radius)
         found += _corner_travel(a, direction, center, radius)
     return min(found, default=None)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.geometry import Point, Pose
 from affcli.core.task import GoalRegion
 from affcli.core.tool import Tool
@@ -50,13 +51,14 @@ class SimulatedExperimenter:
     def attractor_out_of_reach(self) -> bool:
         """Tell whether no behavior from any wrist position can touch the attractor.
 
-        Nothing reaches an attractor that was pushed over an edge of the table.
+        A touch counts when it can move the attractor by more than T detects: a tool that can only
+        graze it shows the robot nothing. Nothing reaches an attractor pushed over the table's edge.
         """
         world = self._world
         point, table = world.attractor.point, world.workspace.table
         on_table = abs(point.x) <= table.half_width and table.near <= point.y <= table.far
-        radius = world.workspace.puck.radius
-        return not (on_table and touchable(world.tool.outlines, self._reach, point, radius))
+        depth = world.workspace.puck.radius - MOVEMENT_THRESHOLD
+        return not (on_table and touchable(world.tool.outlines, self._reach, point, depth))
 
     def put_attractor_back(self) -> None:
         """Put the attractor at a random place of the table within the tool's reach and off it.

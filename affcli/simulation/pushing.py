@@ -11,7 +11,7 @@ from affcli.errors import SimulationDivergedError
 from affcli.simulation.contact import travel_to_contact
 from affcli.simulation.physics_settings import PhysicsSettings
 from affcli.simulation.surface_friction import surface_friction
-from affcli.simulation.wrist_motion import STEP, Stretch, skip
+from affcli.simulation.wrist_motion import STEP, Stretch, distance_of, skip
 
 REST_SPEED = 1e-6
 """The puck rests when it moves slower than this (in/s) and the tool has stopped."""
@@ -94,9 +94,9 @@ class PushSimulator:
         """
         gone = 0.0
         if not whole and watch is None:
-            parts = [outline.moved(wrist.x, wrist.y) for outline in self._outlines]
-            length = sum(s.speed * s.steps for s in motion) * STEP
-            travel = travel_to_contact(parts, direction, length, puck.point, self._radius)
+            center = Point(puck.x - wrist.x, puck.y - wrist.y)
+            length = distance_of(motion)
+            travel = travel_to_contact(self._outlines, direction, length, center, self._radius)
             if travel is None:
                 return puck
             gone, motion = skip(motion, max(0.0, travel - CONTACT_MARGIN))

@@ -6,7 +6,7 @@ its reach, so the attractor is out of reach when no such w lies in the reach.
 """
 
 import math
-from collections.abc import Sequence
+from functools import lru_cache
 
 from affcli.core.geometry import ConvexPolygon, Point
 from affcli.simulation.arm import Reach
@@ -17,7 +17,7 @@ by at most R (1 / cos(pi / 16) - 1), 0.03 in for the puck."""
 
 
 def touchable(
-    outlines: Sequence[ConvexPolygon], reach: Reach, attractor: Point, radius: float
+    outlines: tuple[ConvexPolygon, ...], reach: Reach, attractor: Point, radius: float
 ) -> bool:
     """Tell whether some wrist position within the reach makes the tool touch the attractor.
 
@@ -27,11 +27,22 @@ def touchable(
         attractor: centre of the puck (in, table frame).
         radius: of the puck (in).
     """
-    for part in outlines:
-        # Nearly always a corner of the tool can be brought to the attractor's centre: the quick yes.
-        if any(reach.holds(Point(attractor.x - v.x, attractor.y - v.y)) for v in part.vertices):
-            return True
+    # Nearly always some point of the tool can be brought to the attractor's centre: the quick yes.
+    if any(reach.holds(Point(attractor.x - p.x, attractor.y - p.y)) for p in _points(outlines)):
+        return True
     return any(_part_touches(part, reach, attractor, radius) for part in outlines)
+
+
+@lru_cache(maxsize=64)
+def _points(outlines: tuple[ConvexPolygon, ...]) -> tuple[Point, ...]:
+    """Return the corners of the parts and points between them, on the tool's outline (in)."""
+    shares = (0.0, 0.25, 0.5, 0.75)
+    return tuple(
+        Point(a.x + t * (b.x - a.x), a.y + t * (b.y - a.y))
+        for part in outlines
+        for a, b in part.edges
+        for t in shares
+    )
 
 
 def _part_touches(part: ConvexPolygon, reach: Reach, attractor: Point, radius: float) -> bool:

@@ -66,18 +66,15 @@ class SimulatedRobot:
         return Execution(call, status, start, self._world.wrist, self.clock - began)
 
     def _carry(self, path: WristPath) -> ExecutionStatus:
-        """Move lifted and lower the tool, or come back when the attractor lies under it."""
+        """Move lifted and lower the tool, or keep it lifted there when the attractor lies under it."""
         target = Point(on_grid(path.end.x), on_grid(path.end.y))
         if not self.reaches(np.array([target.x]), np.array([target.y]))[0]:
             return ExecutionStatus.OUT_OF_REACH
         travel = math.dist(self._world.wrist, target)
-        time = path.dwell + trapezoid_time(travel, path.speed, path.acceleration)
-        self.clock += time
-        if not self._world.clear_of_attractor(target):
-            self.clock += time
-            return ExecutionStatus.BLOCKED
+        self.clock += path.dwell + trapezoid_time(travel, path.speed, path.acceleration)
         self._world.wrist = target
-        return ExecutionStatus.DONE
+        clear = self._world.clear_of_attractor(target)
+        return ExecutionStatus.DONE if clear else ExecutionStatus.BLOCKED
 
     def _slide(self, path: WristPath) -> ExecutionStatus:
         """Slide straight on the table, as far as the reach goes."""

@@ -1,6 +1,6 @@
 """The true state of the simulated table, shared by robot, sensor and experimenter."""
 
-from affcli.core.geometry import Point, Pose, distance_to_union
+from affcli.core.geometry import Point, Pose, near_any
 from affcli.core.scene import Scene
 from affcli.core.task import GoalRegion
 from affcli.core.tool import PUCK_COLOR, Tool
@@ -55,7 +55,7 @@ class World:
     def clear_of_attractor(self, wrist: Point) -> bool:
         """Tell whether the tool can be lowered at `wrist` without coming down on the puck."""
         center = Point(self.attractor.x - wrist.x, self.attractor.y - wrist.y)
-        return distance_to_union(self.tool.outlines, center) >= self.workspace.puck.radius
+        return not near_any(self.tool.outlines, center, self.workspace.puck.radius)
 
     def slide(self, direction: Point, end: Point, motion: tuple[Stretch, ...]) -> None:
         """Slide the tool on the table to `end`; the puck goes where physics takes it."""

@@ -6,11 +6,11 @@ why a push can be started a moment before contact and still be the same to the l
 """
 
 import math
+from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
 from affcli.core.geometry import Point
-from affcli.core.workspace import ArmGeometry
 from affcli.simulation.arm import Reach
 
 STEP = 2.0**-9
@@ -32,6 +32,7 @@ def on_grid(length: float) -> float:
     return round(length / GRID) * GRID
 
 
+@lru_cache(maxsize=1024)
 def trapezoid(distance: float, speed: float, acceleration: float) -> tuple[Stretch, ...]:
     """Return the stretches that cover `distance` exactly, speeding up, cruising, slowing down.
 
@@ -56,19 +57,16 @@ def trapezoid(distance: float, speed: float, acceleration: float) -> tuple[Stret
     return (*up, *middle, *tail, *reversed(up))
 
 
+@lru_cache(maxsize=1024)
 def duration(stretches: tuple[Stretch, ...]) -> float:
     """Return how long the stretches take (s)."""
     return sum(s.steps for s in stretches) * STEP
 
 
-def travelled(stretches: tuple[Stretch, ...], steps: int) -> float:
-    """Return the distance covered after the first `steps` physics steps (in), exact."""
-    distance = 0.0
-    for stretch in stretches:
-        taken = min(steps, stretch.steps)
-        distance += stretch.speed * STEP * taken
-        steps -= taken
-    return distance
+@lru_cache(maxsize=1024)
+def distance_of(stretches: tuple[Stretch, ...]) -> float:
+    """Return the distance that the stretches cover (in), exact."""
+    return sum(s.speed * s.steps for s in stretches) * STEP
 
 
 def skip(stretches: tuple[Stretch, ...], distance: float) -> tuple[float, tuple[Stretch, ...]]:

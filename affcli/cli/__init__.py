@@ -1,0 +1,1 @@
+"""The command line: one file a command; options, checks of what the user wrote, exit codes."""

@@ -1,0 +1,60 @@
+"""``affcli break-tool``: the tool breaks, the robot is not told, and adapts (§7.2)."""
+
+from typing import Annotated
+
+import typer
+
+from affcli.cli.options import (
+    DEFAULT_DATABASE,
+    AsJson,
+    Database,
+    Seed,
+    checked_seed,
+    checked_tool,
+)
+from affcli.cli.solve import learned_runs
+from affcli.cli.terminal import now, progress, show, show_json
+from affcli.errors import UsageError
+
+
+def break_tool(
+    *,
+    tool: Annotated[str, typer.Option("--tool", help="What was learned.", metavar="NAME")] = (
+        "t-hook"
+    ),
+    becomes: Annotated[
+        str, typer.Option("--becomes", help="The shape that is left.", metavar="NAME")
+    ] = "l-hook",
+    seed: Seed = 0,
+    database: Database = DEFAULT_DATABASE,
+    as_json: AsJson = False,
+) -> None:
+    """Use a broken tool with the table of the whole one: 4 goals x 4 starts.
+
+    Every trial starts from the table as learned and keeps its counters to itself. The same trials
+    with the whole tool are done beside them, to compare.
+    """
+    checked_tool(tool)
+    if checked_tool(becomes) == tool:
+        raise UsageError(f"--becomes {becomes}: a broken {tool} must be another shape than it was")
+    checked_seed(seed)
+
+    from affcli.config import settings_from_json
+    from affcli.lab.bench import missing_side
+    from affcli.lab.breaking import break_tool as break_trials
+    from affcli.report.breaking import broken_json, broken_tables
+    from affcli.store import open_store
+
+    with open_store(database, create=False, write=True) as store:
+        (run,) = learned_runs(store, tool, database)
+        with progress() as shown:
+            task = shown.add_task(f"{tool} becomes {becomes}", total=32, status="")
+            trials = []
+            for trial in break_trials(store, run, becomes, seed, now):
+                trials.append(trial)
+                shown.update(task, advance=1, status=f"{len(trials)} of 32 trials")
+    side = missing_side(settings_from_json(run.spec.settings), tool, becomes)
+    if as_json:
+        show_json(broken_json(becomes, side, trials))
+    else:
+        show(*broken_tables(becomes, side, trials))

@@ -1,0 +1,134 @@
+"""``affcli learn``: a robot babbles with a tool for an hour and keeps what it saw (§6)."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from affcli.cli.options import (
+    DEFAULT_DATABASE,
+    MOST_BEHAVIORS,
+    AsJson,
+    Config,
+    Database,
+    Seed,
+    checked_count,
+    checked_hours,
+    checked_seed,
+    checked_tools,
+)
+from affcli.cli.terminal import now, progress, say, show, show_json
+from affcli.core.tool import TOOL_PARTS
+from affcli.errors import UsageError
+
+if TYPE_CHECKING:
+    from affcli.core.trial import LearningSpec
+    from affcli.lab.learning import Learned
+    from affcli.store import Store
+
+
+def learn(
+    *,
+    tool: Annotated[
+        list[str] | None,
+        typer.Option("--tool", help="A tool; give it several times for several.", metavar="NAME"),
+    ] = None,
+    all_tools: Annotated[bool, typer.Option("--all-tools", help="All five tools.")] = False,
+    hours: Annotated[
+        float | None, typer.Option("--hours", help="Robot hours; 1 if not given.", metavar="H")
+    ] = None,
+    behaviors: Annotated[
+        int | None, typer.Option("--behaviors", help="Instead of hours.", metavar="N")
+    ] = None,
+    seed: Seed = 0,
+    database: Database = DEFAULT_DATABASE,
+    config: Config = None,
+    as_json: AsJson = False,
+) -> None:
+    """Let a robot babble with a tool and fill its affordance table.
+
+    The same command again says that the run is done; after an interruption it goes on.
+    """
+    names = list(TOOL_PARTS) if all_tools else checked_tools(tool or ())
+    if not names:
+        raise UsageError(f"which tool? give --tool {'|'.join(TOOL_PARTS)}, or --all-tools")
+    if hours is not None and behaviors is not None:
+        raise UsageError("give --hours or --behaviors, not both")
+    if behaviors is not None:
+        checked_count("--behaviors", behaviors, MOST_BEHAVIORS)
+    else:
+        hours = checked_hours(1.0 if hours is None else hours)
+    checked_seed(seed)
+
+    from affcli.config import load_settings
+    from affcli.core.trial import LearningSpec
+    from affcli.store import open_store
+
+    settings = load_settings(config).to_json()
+    specs = [LearningSpec(name, seed, 0, hours, behaviors, settings) for name in names]
+    with open_store(database, create=True, write=True) as store:
+        results = [_learn(store, spec) for spec in specs]
+        if as_json:
+            show_json([_as_json(store, learned) for learned in results])
+            return
+        from affcli.report.learning import groups_table
+
+        for learned in results:
+            tool_name = learned.info.spec.tool
+            show(groups_table(tool_name, store.behavior_groups(learned.info.id)))
+
+
+def _learn(store: "Store", spec: "LearningSpec") -> "Learned":
+    """Run one learning run with progress on stderr; say what it gave."""
+    from affcli.lab.learning import learn as learn_run
+    from affcli.report.learning import clock
+
+    goal = 3600.0 * spec.hours if spec.hours is not None else float(spec.behaviors or 0)
+    with progress() as shown:
+        task = shown.add_task(f"learning {spec.tool}", total=goal, status="")
+
+        def update(info: Any) -> None:
+            """Show the robot clock, behaviors, rows and resets."""
+            done = info.robot_seconds if spec.hours is not None else info.behaviors
+            status = (
+                f"{clock(info.robot_seconds)}, {info.behaviors} behaviors, {info.rows} rows, "
+                f"{info.resets} resets"
+            )
+            shown.update(task, completed=min(done, goal), status=status)
+
+        learned = learn_run(store, spec, now, update)
+    info = learned.info
+    verb = "learned" if learned.new else "already learned, nothing to do:"
+    say(
+        f"{verb} {spec.tool} (run {info.id}, seed {spec.seed}): {clock(info.robot_seconds)} of "
+        f"robot time, {info.behaviors} behaviors, {info.rows} rows, {info.resets} resets"
+    )
+    return learned
+
+
+def _as_json(store: "Store", learned: "Learned") -> dict[str, Any]:
+    """Return one run as JSON types."""
+    info = learned.info
+    return {
+        "run": info.id,
+        "tool": info.spec.tool,
+        "seed": info.spec.seed,
+        "new": learned.new,
+        "behaviors": info.behaviors,
+        "rows": info.rows,
+        "resets": info.resets,
+        "robot_seconds": info.robot_seconds,
+        "groups": [
+            {
+                "behavior": group.name,
+                "tried": group.tried,
+                "rows": group.rows,
+                "mean_movement": group.mean_movement,
+                "mean_dx": group.mean_dx,
+                "mean_dy": group.mean_dy,
+            }
+            for group in store.behavior_groups(info.id)
+        ],
+    }
+
+

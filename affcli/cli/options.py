@@ -1,0 +1,84 @@
+"""Options that several commands share, and the checks of what a user wrote."""
+
+import difflib
+import math
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from affcli.core.task import GOAL_NUMBERS, START_NUMBERS
+from affcli.core.tool import TOOL_PARTS
+from affcli.errors import BadInputError, UsageError, one_line
+
+LARGEST_SEED = 2**63 - 1
+LONGEST_HOURS = 10_000.0
+MOST_BEHAVIORS = 10_000_000
+MOST_ROBOTS = 100_000
+MOST_WORKERS = 256
+
+Database = Annotated[
+    Path,
+    typer.Option("--db", envvar="AFFCLI_DB", help="The SQLite file.", metavar="FILE"),
+]
+DEFAULT_DATABASE = Path("affcli.db")
+
+AsJson = Annotated[bool, typer.Option("--json", help="Write JSON to stdout.")]
+Seed = Annotated[int, typer.Option("--seed", help="0 to 2^63 - 1.", metavar="N")]
+Config = Annotated[
+    Path | None,
+    typer.Option("--config", help="A TOML file of settings that differ.", metavar="FILE"),
+]
+
+
+def checked_seed(seed: int) -> int:
+    """Return the seed; BadInputError when it does not lie in 0 to 2^63 - 1."""
+    if not 0 <= seed <= LARGEST_SEED:
+        raise BadInputError(f"--seed {one_line(seed, 40)}: must lie in 0 to 2^63 - 1")
+    return seed
+
+
+def checked_hours(hours: float) -> float:
+    """Return the hours; BadInputError when they do not lie in (0, 10000]."""
+    if not (math.isfinite(hours) and 0.0 < hours <= LONGEST_HOURS):
+        raise BadInputError(f"--hours {hours}: must be more than 0 and at most {LONGEST_HOURS:g}")
+    return hours
+
+
+def checked_count(option: str, count: int, most: int) -> int:
+    """Return a count; BadInputError when it does not lie in 1 to `most`."""
+    if not 1 <= count <= most:
+        raise BadInputError(f"{option} {one_line(count, 40)}: must lie in 1 to {most}")
+    return count
+
+
+def checked_tool(name: str) -> str:
+    """Return the name of a tool; UsageError with the nearest names when there is none such."""
+    return _one_of("tool", name, list(TOOL_PARTS))
+
+
+def checked_tools(names: Iterable[str]) -> list[str]:
+    """Return tool names, each given by itself or several with commas, without repeats."""
+    single = [part for name in names for part in name.split(",")]
+    return list(dict.fromkeys(checked_tool(name) for name in single))
+
+
+def checked_goal(goal: int) -> int:
+    """Return the number of a goal; UsageError when there is none such."""
+    return int(_one_of("goal", str(goal), [str(n) for n in GOAL_NUMBERS]))
+
+
+def checked_starts(start: str) -> Sequence[int]:
+    """Return the starts asked for: one of 1 to 4, or all."""
+    if start == "all":
+        return START_NUMBERS
+    return (int(_one_of("start", start, [*(str(n) for n in START_NUMBERS), "all"])),)
+
+
+def _one_of(kind: str, value: str, known: Sequence[str]) -> str:
+    """Return `value` when it is known; else say which values are nearest."""
+    if value in known:
+        return value
+    near = difflib.get_close_matches(value[:40].lower(), known, n=3, cutoff=0.4) or known
+    raise UsageError(f"no {kind} {one_line(value, 60)!r}; did you mean {' or '.join(near)}?")

@@ -1,0 +1,73 @@
+"""``affcli reproduce``: the whole paper on many robots (§7)."""
+
+import os
+from typing import Annotated
+
+import typer
+
+from affcli.cli.options import (
+    DEFAULT_DATABASE,
+    MOST_ROBOTS,
+    MOST_WORKERS,
+    AsJson,
+    Config,
+    Database,
+    Seed,
+    checked_count,
+    checked_seed,
+)
+from affcli.cli.terminal import now, progress, say, show, show_json
+
+
+def reproduce(
+    *,
+    robots: Annotated[int, typer.Option("--robots", help="How many robots.", metavar="N")] = 20,
+    seed: Seed = 0,
+    workers: Annotated[
+        int | None,
+        typer.Option("--workers", help="Processes; one a core if not given.", metavar="N"),
+    ] = None,
+    database: Database = DEFAULT_DATABASE,
+    config: Config = None,
+    as_json: AsJson = False,
+) -> None:
+    """Let many robots learn the five tools and do the paper's 80 + 16 trials; compare.
+
+    The result is the same for any number of workers. An interrupted reproduction goes on when the
+    same command is given again.
+    """
+    checked_count("--robots", robots, MOST_ROBOTS)
+    checked_seed(seed)
+    if workers is None:
+        workers = min(len(os.sched_getaffinity(0)), MOST_WORKERS) if _has_affinity() else 1
+    checked_count("--workers", workers, MOST_WORKERS)
+
+    from affcli.config import load_settings
+    from affcli.lab.reproduction import reproduce as run_reproduction
+    from affcli.report.reproduction import (
+        failures_table,
+        reproduction_json,
+        reproduction_table,
+    )
+    from affcli.report.summaries import reproduction_of
+    from affcli.store import open_store
+
+    settings = load_settings(config)
+    with open_store(database, create=True, write=True) as store:
+        events = run_reproduction(store, settings, robots, seed, workers, now)
+        session = next(events)
+        with progress() as shown:
+            task = shown.add_task("reproducing", total=robots, status="")
+            for saved in events:
+                shown.update(task, completed=saved, status=f"{saved} of {robots} robots")
+        result = reproduction_of(robots, store.successes(session), store.failures(session))
+    say(f"session {session}: {robots} robots, seed {seed}, saved in {database}")
+    if as_json:
+        show_json(reproduction_json(result))
+    else:
+        show(reproduction_table(result), failures_table(result.failures, 96 * robots))
+
+
+def _has_affinity() -> bool:
+    """Tell whether the system says which cores this process may use."""
+    return hasattr(os, "sched_getaffinity")

@@ -1,0 +1,123 @@
+"""``affcli solve``: bring the attractor over a goal with what was learned (§6.2, §7.1)."""
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from affcli.cli.options import (
+    DEFAULT_DATABASE,
+    AsJson,
+    Database,
+    Seed,
+    checked_goal,
+    checked_seed,
+    checked_starts,
+    checked_tool,
+)
+from affcli.cli.terminal import now, show, show_json
+from affcli.core.tool import TOOL_PARTS
+from affcli.errors import UsageError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from affcli.core.trial import StepRecord
+    from affcli.lab.solving import SolvedTrial
+    from affcli.store import LearningRunInfo, Store
+
+
+def solve(
+    *,
+    goal: Annotated[int, typer.Option("--goal", help="1 to 4.", metavar="N")],
+    tool: Annotated[
+        str | None,
+        typer.Option("--tool", help="One tool; all learned ones if not given.", metavar="NAME"),
+    ] = None,
+    start: Annotated[str, typer.Option("--start", help="1 to 4, or all.", metavar="N")] = "all",
+    seed: Seed = 0,
+    explain: Annotated[
+        bool, typer.Option("--explain", help="Say step by step why each row was chosen.")
+    ] = False,
+    database: Database = DEFAULT_DATABASE,
+    as_json: AsJson = False,
+) -> int:
+    """Bring the attractor over a goal region with the tables that were learned.
+
+    Every step updates the counters of the row it used in the stored table. Exit code 1 only when a
+    single start was asked for and not solved.
+    """
+    checked_goal(goal)
+    starts = checked_starts(start)
+    checked_seed(seed)
+    if tool is not None:
+        checked_tool(tool)
+
+    from affcli.lab.solving import SolvedStep
+    from affcli.lab.solving import solve as solve_trials
+    from affcli.report.trials import explain_step, solve_table, trial_line
+    from affcli.store import open_store
+
+    trials: list[SolvedTrial] = []
+    steps: list[list[StepRecord]] = [[]]
+    with open_store(database, create=False, write=True) as store:
+        runs = learned_runs(store, tool, database)
+        for event in solve_trials(store, runs, goal, starts, seed, now):
+            if isinstance(event, SolvedStep):
+                steps[-1].append(event.record)
+                continue
+            trials.append(event)
+            steps.append([])
+            if explain and not as_json:
+                show(trial_line(event.trial, event.end), *map(explain_step, steps[-2]))
+    if as_json:
+        show_json([_as_json(*pair, explain) for pair in zip(trials, steps[:-1], strict=True)])
+    else:
+        show(solve_table(goal, [(t.trial, t.end) for t in trials]))
+    return 0 if len(starts) > 1 or all(t.solved for t in trials) else 1
+
+
+def learned_runs(store: "Store", tool: str | None, database: "Path") -> list["LearningRunInfo"]:
+    """Return the latest finished learning run of the tool, or of every tool that has one.
+
+    Raises:
+        UsageError: there is none; the message names the command to run.
+    """
+    names = [tool] if tool is not None else list(TOOL_PARTS)
+    runs = [run for run in map(store.latest_run, names) if run is not None]
+    if not runs:
+        where = "" if database == DEFAULT_DATABASE else f" --db {database}"
+        raise UsageError(
+            f"nothing learned with the {tool or 'tools'} in {database}; "
+            f"first run: affcli learn --tool {tool or 't-hook'}{where}"
+        )
+    return runs
+
+
+def _as_json(trial: "SolvedTrial", steps: list["StepRecord"], explain: bool) -> dict[str, Any]:
+    """Return one trial as JSON types; with its steps when they were asked for."""
+    spec, end = trial.trial, trial.end
+    value: dict[str, Any] = {
+        "tool": spec.tool,
+        "goal": spec.goal,
+        "start": spec.start,
+        "outcome": end.outcome.value,
+        "steps": end.steps,
+        "robot_seconds": end.clock,
+    }
+    if explain:
+        value["explain"] = [
+            {
+                "step": record.number,
+                "row": record.row.step,
+                "behavior": str(record.row.exploratory),
+                "rows_left": record.survivors._asdict(),
+                "placing": record.placing.status.value,
+                "expected": [record.expected.dx, record.expected.dy],
+                "seen": [record.seen.dx, record.seen.dy],
+                "replicated": record.replicated,
+                "probability_before": record.row.replication_probability,
+                "probability_after": record.times_successful_after / record.times_used_after,
+            }
+            for record in steps
+        ]
+    return value

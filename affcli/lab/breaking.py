@@ -1,0 +1,45 @@
+"""A tool that breaks: the robot does not know, and adapts (§7.2)."""
+
+from collections.abc import Callable, Iterator
+
+from affcli.config import settings_from_json
+from affcli.core.trial import Protocol, TrialRecord
+from affcli.lab.trials import LostAffordances, trial_specs, whole_trial
+from affcli.lab.versions import versions
+from affcli.simulation.world import World
+from affcli.store import LearningRunInfo, Store
+
+
+def break_tool(
+    store: Store, run: LearningRunInfo, shape: str, seed: int, now: Callable[[], str]
+) -> Iterator[TrialRecord]:
+    """Do the 16 trials with the broken tool, and the same 16 with the whole one beside them.
+
+    Each trial starts from the table as learned and keeps its counters in its own steps; the stored
+    table stays as it is.
+
+    Args:
+        store: open for writing.
+        run: the learning run whose table is used.
+        shape: what is left of the tool; it keeps the tool's colour, so the robot is not told.
+        seed: of the sensor's noise.
+        now: gives the time as ISO text.
+
+    Yields:
+        Each trial once it is saved, the broken tool's first.
+    """
+    settings = settings_from_json(run.spec.settings)
+    table, ids = store.affordance_table(run.id, as_learned=True)
+    world = World(settings.workspace, settings.physics)
+    lost = LostAffordances(settings, shape, store.row_starts(run.id))
+    session = store.begin_session("break-tool", seed, 1, run.spec.settings, versions(), now())
+    tool, robot = run.spec.tool, run.spec.robot
+    for protocol, held, judge in (
+        (Protocol.TOOL_ADAPTATION, shape, lost),
+        (Protocol.EXTENSION_OF_REACH, tool, None),
+    ):
+        for spec in trial_specs(protocol, tool, held, seed, robot):
+            trial = whole_trial(spec, settings, table, world, judge)
+            store.save_trials(session, run.id, [trial], ids)
+            yield trial
+    store.finish_session(session, now())

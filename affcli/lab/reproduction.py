@@ -1,0 +1,117 @@
+"""The whole paper on many robots: each learns the five tools and does the 80 + 16 trials (§6, §7)."""
+
+import signal
+from collections import deque
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
+from functools import partial
+from multiprocessing import get_context
+
+from affcli.config import Settings
+from affcli.core.affordance_table import AffordanceTable
+from affcli.core.geometry import Point, Pose
+from affcli.core.tool import TOOL_PARTS
+from affcli.core.trial import LearningSpec, Protocol, RobotRecord, TrialRecord
+from affcli.lab.learning import LearningRun
+from affcli.lab.trials import LostAffordances, trial_specs, whole_trial
+from affcli.lab.versions import versions
+from affcli.simulation.world import World
+from affcli.store import Store
+
+BROKEN_TOOL, BROKEN_SHAPE = "t-hook", "l-hook"
+"""§7.2: the learning was performed with a T-hook which was then replaced with an L-hook."""
+
+HOURS = 1.0
+"""§6: one hour of run time for every tool."""
+
+
+def one_robot(settings: Settings, seed: int, robot: int) -> RobotRecord:
+    """Return the life of one robot: a pure function of settings, seed and its number."""
+    text = settings.to_json()
+    world = World(settings.workspace, settings.physics)
+    learned = []
+    trials: list[TrialRecord] = []
+    for name in TOOL_PARTS:
+        spec = LearningSpec(name, seed, robot, HOURS, None, text)
+        run = LearningRun(spec)
+        steps = tuple(run.steps())
+        learned.append((spec, steps, run.bench.robot.clock))
+        table = AffordanceTable(r.affordance for r, _ in steps if r.affordance is not None)
+        for trial in trial_specs(Protocol.EXTENSION_OF_REACH, name, name, seed, robot):
+            trials.append(whole_trial(trial, settings, table, world))
+        if name == BROKEN_TOOL:
+            starts: dict[int, tuple[Point, Pose]] = {
+                r.step: (r.execution.wrist_start, truth.start) for r, truth in steps if r.affordance
+            }
+            lost = LostAffordances(settings, BROKEN_SHAPE, starts)
+            broken = trial_specs(Protocol.TOOL_ADAPTATION, name, BROKEN_SHAPE, seed, robot)
+            trials += [whole_trial(trial, settings, table, world, lost) for trial in broken]
+    return RobotRecord(robot, tuple(learned), tuple(trials))
+
+
+def reproduce(
+    store: Store,
+    settings: Settings,
+    robots: int,
+    seed: int,
+    workers: int,
+    now: Callable[[], str],
+) -> Iterator[int]:
+    """Let `robots` independent robots learn and be tested; save each as it is done.
+
+    Robots that the store holds already are not run again, so an interrupted reproduction goes on.
+    Robots are saved in the order of their numbers by this process alone: the same store for any
+    number of workers.
+
+    Args:
+        store: open for writing.
+        settings: of every robot.
+        robots: how many.
+        seed: shared; robot i is a function of (settings, seed, i).
+        workers: processes; 1 runs everything in this one.
+        now: gives the time as ISO text.
+
+    Yields:
+        The session's id first, then how many robots are saved, each time one more is.
+    """
+    text = settings.to_json()
+    session = store.begin_session("reproduce", seed, robots, text, versions(), now())
+    yield session
+    missing = [i for i in range(robots) if i not in store.saved_robots(session)]
+    saved = robots - len(missing)
+    for record in _lives(settings, seed, missing, workers):
+        store.save_robot(session, record, versions(), now())
+        saved += 1
+        yield saved
+    store.finish_session(session, now())
+
+
+def _lives(
+    settings: Settings, seed: int, robots: list[int], workers: int
+) -> Iterator[RobotRecord]:
+    """Yield the robots' lives in order, computed by `workers` processes.
+
+    No more than a few finished lives wait at any time, so memory stays flat however many robots.
+    """
+    life = partial(one_robot, settings, seed)
+    if workers == 1 or len(robots) <= 1:
+        yield from map(life, robots)
+        return
+    context = get_context("spawn")
+    pool = ProcessPoolExecutor(workers, context, initializer=_leave_signals_to_parent)
+    waiting: deque[Future[RobotRecord]] = deque()
+    todo = iter(robots)
+    try:
+        for robot in todo:
+            waiting.append(pool.submit(life, robot))
+            if len(waiting) > 2 * workers:
+                yield waiting.popleft().result()
+        while waiting:
+            yield waiting.popleft().result()
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _leave_signals_to_parent() -> None:
+    """Let ctrl-C reach the parent alone, which saves and stops the workers."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -1,0 +1,88 @@
+"""Solving tasks with what the store holds: every step updates the stored table (§6.2, §7.1)."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+from affcli.config import settings_from_json
+from affcli.core.trial import Counters, Outcome, Protocol, StepRecord, TrialEnd, TrialSpec
+from affcli.lab.trials import run_trial
+from affcli.lab.versions import versions
+from affcli.simulation.world import World
+from affcli.store import LearningRunInfo, Store
+
+
+@dataclass(frozen=True, slots=True)
+class SolvedStep:
+    """One step of a trial, just saved."""
+
+    trial: TrialSpec
+    record: StepRecord
+
+
+@dataclass(frozen=True, slots=True)
+class SolvedTrial:
+    """A trial that ended, just saved."""
+
+    trial: TrialSpec
+    end: TrialEnd
+
+    @property
+    def solved(self) -> bool:
+        """Whether the attractor was brought over the goal region."""
+        return self.end.outcome is Outcome.SOLVED
+
+
+def solve(
+    store: Store,
+    runs: Sequence[LearningRunInfo],
+    goal: int,
+    starts: Sequence[int],
+    seed: int,
+    now: Callable[[], str],
+) -> Iterator[SolvedStep | SolvedTrial]:
+    """Do one trial for each learned tool and start, one after the other.
+
+    Each trial starts from the table as it is in the store, counters included, and each step is
+    saved together with the counters it changed, in one transaction (§3.2: the counters are updated
+    during testing trials).
+
+    Args:
+        store: open for writing.
+        runs: the learning runs whose tables are used, one for each tool.
+        goal: 1 to 4.
+        starts: among 1 to 4.
+        seed: of the sensor's noise.
+        now: gives the time as ISO text.
+
+    Yields:
+        Each step once it is saved, and each trial's end.
+    """
+    session = store.begin_session("solve", seed, 1, runs[0].spec.settings, versions(), now())
+    for run in runs:
+        settings = settings_from_json(run.spec.settings)
+        world = World(settings.workspace, settings.physics)
+        for start in starts:
+            spec = TrialSpec(
+                protocol=Protocol.EXTENSION_OF_REACH,
+                tool=run.spec.tool,
+                shape=run.spec.tool,
+                goal=goal,
+                start=start,
+                seed=seed,
+                robot=run.spec.robot,
+                counters=Counters.STORED,
+            )
+            table, ids = store.affordance_table(run.id)
+            trial = store.begin_trial(session, run.id, spec)
+            steps = run_trial(spec, settings, table, world)
+            while True:
+                try:
+                    record, truth = next(steps)
+                except StopIteration as stop:
+                    end: TrialEnd = stop.value
+                    break
+                store.save_step(trial, spec, record, truth, ids[record.row.step])
+                yield SolvedStep(spec, record)
+            store.end_trial(trial, end)
+            yield SolvedTrial(spec, end)
+    store.finish_session(session, now())

@@ -1,0 +1,1 @@
+"""What is shown: rich tables and plain numbers, returned to the caller; never printed here."""

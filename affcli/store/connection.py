@@ -1,0 +1,93 @@
+"""Transactions on one SQLite connection: they wait for locks, and commit whole or not at all."""
+
+import sqlite3
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import sqlalchemy as sa
+
+from affcli.store.faults import faults_named
+from affcli.store.patience import patiently
+
+
+class Connected:
+    """What every part of the store shares: the connection, and its transactions.
+
+    Args:
+        connection: SQLAlchemy's, around `driver`.
+        driver: the sqlite3 connection, in autocommit: BEGIN and COMMIT are said here alone.
+        path: the database file.
+        timeout: seconds to wait for a lock.
+    """
+
+    def __init__(
+        self, connection: sa.Connection, driver: sqlite3.Connection, path: Path, timeout: float
+    ) -> None:
+        self.path = path
+        self._connection = connection
+        self._driver = driver
+        self._timeout = timeout
+
+    @contextmanager
+    def reading(self) -> Iterator[sa.Connection]:
+        """Give a connection that sees one state of the database throughout.
+
+        Raises:
+            DatabaseError: locked too long, or damaged.
+        """
+        with self._transaction("BEGIN") as connection:
+            # BEGIN takes no lock; the first read does.
+            patiently(lambda: self._driver.execute("SELECT 1 FROM sqlite_master"), self._timeout)
+            yield connection
+
+    @contextmanager
+    def writing(self) -> Iterator[sa.Connection]:
+        """Give a connection whose changes are all saved on leaving, or none.
+
+        BEGIN IMMEDIATE: a transaction that begins reading and then wants to write does not wait for
+        another writer but fails at once.
+
+        Raises:
+            DatabaseError: locked too long, read-only, disk full, damaged.
+        """
+        with self._transaction("BEGIN IMMEDIATE") as connection:
+            yield connection
+
+    @contextmanager
+    def _transaction(self, begin: str) -> Iterator[sa.Connection]:
+        """Begin, and at the end commit; roll back whatever goes wrong, ctrl-C too."""
+        with faults_named(self.path, self._timeout):
+            patiently(lambda: self._driver.execute(begin), self._timeout)
+            try:
+                yield self._connection
+                # While others read nobody can commit; the transaction stays open and is tried again.
+                patiently(lambda: self._driver.execute("COMMIT"), self._timeout)
+            finally:
+                if self._driver.in_transaction:
+                    with suppress(sqlite3.Error):
+                        self._driver.execute("ROLLBACK")
+
+
+def insert_many(
+    connection: sa.Connection, table: sa.TableClause, rows: Sequence[tuple[Any, ...]]
+) -> None:
+    """Insert rows given as tuples in the order of the table's columns, `id` left out.
+
+    The statement is compiled by SQLAlchemy and run by the driver: 3.2 times as fast as handing
+    SQLAlchemy the rows (3,500 behaviors: 15 ms against 48 ms).
+    """
+    if rows:
+        columns = [c.name for c in table.columns if c.name != "id"]
+        statement = sa.insert(table).compile(
+            dialect=connection.dialect, column_keys=columns
+        )
+        connection.exec_driver_sql(str(statement), [tuple(row) for row in rows])
+
+
+def insert_one(connection: sa.Connection, table: sa.TableClause, row: tuple[Any, ...]) -> int:
+    """Insert one row and return the id it was given."""
+    columns = (c.name for c in table.columns if c.name != "id")
+    result = connection.execute(sa.insert(table).values(dict(zip(columns, row, strict=True))))
+    return int(result.lastrowid)

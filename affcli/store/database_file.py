@@ -1,0 +1,114 @@
+"""Looking at a file before anything else: is it there, is it affcli's, is it sound?
+
+Standard library only, so that ``affcli sql`` starts without SQLAlchemy.
+"""
+
+import os
+import sqlite3
+import stat
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from pathlib import Path
+
+from affcli.errors import DatabaseError, one_line
+from affcli.store.faults import REMEDIES, faults_named
+from affcli.store.identity import stored_revision
+from affcli.store.patience import ATTEMPT, patiently
+
+CHECKED_UP_TO = 32 * 2**20
+"""Bytes up to which the whole file is checked when it is opened. In a larger one a damaged page is
+found when it is read."""
+
+
+def require_place(path: Path, *, create: bool, write: bool) -> None:
+    """Refuse a path at which there can be no database, before SQLite touches it.
+
+    Args:
+        path: where the database is or shall be.
+        create: it may be missing.
+        write: it will be written.
+
+    Raises:
+        DatabaseError: missing, no regular file, or not to be read or written.
+    """
+    shown = one_line(path)
+    missing = False
+    try:
+        if not stat.S_ISREG(path.stat().st_mode):
+            raise DatabaseError(f"{shown}: not a file; name another with --db")
+    except FileNotFoundError:
+        missing = True
+    except (OSError, ValueError) as error:
+        raise DatabaseError(f"{shown}: {one_line(error)}; name another file with --db") from error
+    if missing and not create:
+        raise DatabaseError(
+            f"{shown}: no database there; `affcli learn` makes one, or name another with --db"
+        )
+    folder = path.resolve().parent
+    if not folder.is_dir():
+        raise DatabaseError(f"{shown}: its folder does not exist; make it, or name another file")
+    if not (missing or os.access(path, os.R_OK)):
+        raise DatabaseError(f"{shown}: {REMEDIES[sqlite3.SQLITE_PERM]}")
+    # SQLite makes its journal beside the file, so the folder counts too.
+    writable = os.access(folder, os.W_OK) and (missing or os.access(path, os.W_OK))
+    if write and not writable:
+        raise DatabaseError(f"{shown}: {REMEDIES[sqlite3.SQLITE_READONLY]}")
+
+
+@contextmanager
+def opened(path: Path, mode: str, timeout: float) -> Iterator[sqlite3.Connection]:
+    """Open a SQLite file, the driver in autocommit.
+
+    Args:
+        path: the file.
+        mode: of SQLite's URIs: ``ro``, ``rw`` or ``rwc``.
+        timeout: seconds named in an error about a lock.
+    """
+    # as_uri quotes what a URI would read as its own: ? # %
+    uri = f"{path.absolute().as_uri()}?mode={mode}"
+    with faults_named(path, timeout):
+        driver = sqlite3.connect(uri, uri=True, timeout=ATTEMPT, isolation_level=None)
+    with closing(driver):
+        yield driver
+
+
+def look(driver: sqlite3.Connection, path: Path, timeout: float) -> str | None:
+    """Return the revision of an opened file, None when it is empty, after checking it is sound.
+
+    Args:
+        driver: the opened file; no transaction is open.
+        path: where it is, for the message.
+        timeout: seconds to wait for a lock.
+
+    Raises:
+        DatabaseError: not a database, another program's, damaged, locked too long.
+    """
+    with faults_named(path, timeout):
+        driver.execute("BEGIN")
+        try:
+            patiently(lambda: driver.execute("SELECT 1 FROM sqlite_master"), timeout)
+            revision = stored_revision(driver, path)
+            if path.stat().st_size <= CHECKED_UP_TO:
+                _require_sound(driver, path)
+            return revision
+        finally:
+            if driver.in_transaction:
+                driver.execute("ROLLBACK")
+
+
+def require_something(revision: str | None, path: Path) -> str:
+    """Return the revision of a database in which there is something to read.
+
+    Raises:
+        DatabaseError: the file is empty.
+    """
+    if revision is None:
+        raise DatabaseError(f"{one_line(path)}: an empty file; `affcli learn` makes a database of it")
+    return revision
+
+
+def _require_sound(driver: sqlite3.Connection, path: Path) -> None:
+    """Refuse a file whose pages contradict one another."""
+    finding = driver.execute("PRAGMA quick_check(1)").fetchone()[0]
+    if finding != "ok":
+        raise DatabaseError(f"{one_line(path)}: {REMEDIES[sqlite3.SQLITE_CORRUPT]}")

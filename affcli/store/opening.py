@@ -1,0 +1,87 @@
+"""Opening a database: look first, migrate what is new, refuse what is not ours."""
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import sqlalchemy as sa
+
+from affcli.store.database_file import look, opened, require_place, require_something
+from affcli.store.identity import REVISION, is_older, require_current, stored_revision
+from affcli.store.journal import set_journal_mode
+from affcli.store.migrate import run_migrations
+from affcli.store.patience import PATIENCE
+from affcli.store.repository import Store
+
+
+@contextmanager
+def open_store(
+    path: Path, *, create: bool, write: bool, timeout: float = PATIENCE
+) -> Iterator[Store]:
+    """Open a database for the length of a ``with`` block.
+
+    Args:
+        path: the SQLite file.
+        create: make the file, or the schema in an empty one, when it is not there.
+        write: it will be written; without it every write is refused.
+        timeout: seconds to wait for a lock that another process holds.
+
+    Raises:
+        DatabaseError: missing, unreadable, damaged, another program's, of another schema, locked.
+    """
+    require_place(path, create=create, write=write or create)
+    with opened(path, "rwc" if create else "rw", timeout) as driver:
+        revision = look(driver, path, timeout)
+        if revision is not None or not create:
+            require_current(require_something(revision, path), path)
+        with _engine(driver).connect() as connection:
+            store = Store(connection, driver, path, timeout)
+            if revision is None:
+                _make_schema(store, driver)
+            _prepare(driver, write=write or create)
+            yield store
+
+
+def upgrade(path: Path, *, timeout: float = PATIENCE) -> tuple[str, str]:
+    """Bring an existing database to the schema of this affcli, in one transaction.
+
+    Returns:
+        The revisions before and after; equal when there was nothing to do.
+
+    Raises:
+        DatabaseError: as `open_store`; a newer schema is left as it is.
+    """
+    require_place(path, create=False, write=True)
+    with opened(path, "rw", timeout) as driver:
+        before = require_something(look(driver, path, timeout), path)
+        if is_older(before):
+            with _engine(driver).connect() as connection:
+                store = Store(connection, driver, path, timeout)
+                with store.writing():
+                    run_migrations(connection)
+        else:
+            require_current(before, path)
+        return before, REVISION
+
+
+def _make_schema(store: Store, driver: sqlite3.Connection) -> None:
+    """Make the schema in an empty file, unless another process has just done so."""
+    with store.writing() as connection:
+        if stored_revision(driver, store.path) is None:
+            run_migrations(connection)
+
+
+def _engine(driver: sqlite3.Connection) -> sa.Engine:
+    """Return an engine whose one connection is `driver`."""
+    return sa.create_engine("sqlite://", creator=lambda: driver, poolclass=sa.StaticPool)
+
+
+def _prepare(driver: sqlite3.Connection, *, write: bool) -> None:
+    """Set what SQLite keeps for a connection and not in the file."""
+    driver.execute("PRAGMA foreign_keys = ON")
+    driver.execute("PRAGMA synchronous = FULL")
+    if write:
+        set_journal_mode(driver)
+    else:
+        driver.execute("PRAGMA query_only = ON")

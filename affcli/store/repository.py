@@ -1,0 +1,13 @@
+"""The store as the rest of affcli sees it."""
+
+from affcli.store.learning import LearningRuns
+from affcli.store.results import Results
+from affcli.store.trials import Trials
+
+
+class Store(LearningRuns, Trials, Results):
+    """An open database: learning runs, trials, and results for reports.
+
+    Every method is one transaction and returns plain values; no row or connection leaves the store.
+    A method that cannot read or write raises DatabaseError, and what was saved before is kept.
+    """
