@@ -1,5 +1,7 @@
 """``affcli db``: the database file itself."""
 
+from dataclasses import asdict
+
 import typer
 
 from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database
@@ -22,13 +24,15 @@ def info(*, database: Database = DEFAULT_DATABASE, as_json: AsJson = False) -> N
     """Say what the file is: schema revision, size, journal mode, rows of each table."""
     from affcli.store import database_info
 
-    facts = database_info(database)
+    facts = {
+        key: str(v) if key == "path" else v for key, v in asdict(database_info(database)).items()
+    }
     if as_json:
         show_json(facts)
         return
     from rich.table import Table
 
     table = Table(show_header=False)
-    for name, value in facts.items():
-        table.add_row(str(name), str(value))
+    for name, value in {**facts, **facts.pop("counts")}.items():
+        table.add_row(name, str(value))
     show(table)

@@ -1,7 +1,6 @@
 """``affcli learn``: a robot babbles with a tool for an hour and keeps what it saw (§6)."""
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -24,7 +23,7 @@ from affcli.errors import UsageError
 if TYPE_CHECKING:
     from affcli.core.trial import LearningSpec
     from affcli.lab.learning import Learned
-    from affcli.store import Store
+    from affcli.store import LearningRunInfo, Store
 
 
 def learn(
@@ -62,20 +61,24 @@ def learn(
 
     from affcli.config import load_settings
     from affcli.core.trial import LearningSpec
+    from affcli.report.learning import groups_json, groups_table, run_json
     from affcli.store import open_store
 
     settings = load_settings(config).to_json()
     specs = [LearningSpec(name, seed, 0, hours, behaviors, settings) for name in names]
     with open_store(database, create=True, write=True) as store:
         results = [_learn(store, spec) for spec in specs]
-        if as_json:
-            show_json([_as_json(store, learned) for learned in results])
-            return
-        from affcli.report.learning import groups_table
-
-        for learned in results:
-            tool_name = learned.info.spec.tool
-            show(groups_table(tool_name, store.behavior_groups(learned.info.id)))
+        groups = [store.behavior_groups(learned.info.id) for learned in results]
+    if as_json:
+        show_json(
+            [
+                {**run_json(learned.info), "new": learned.new, "groups": groups_json(group)}
+                for learned, group in zip(results, groups, strict=True)
+            ]
+        )
+        return
+    for learned, group in zip(results, groups, strict=True):
+        show(groups_table(learned.info.spec.tool, group))
 
 
 def _learn(store: "Store", spec: "LearningSpec") -> "Learned":
@@ -87,7 +90,7 @@ def _learn(store: "Store", spec: "LearningSpec") -> "Learned":
     with progress() as shown:
         task = shown.add_task(f"learning {spec.tool}", total=goal, status="")
 
-        def update(info: Any) -> None:
+        def update(info: "LearningRunInfo") -> None:
             """Show the robot clock, behaviors, rows and resets."""
             done = info.robot_seconds if spec.hours is not None else info.behaviors
             status = (
@@ -104,31 +107,3 @@ def _learn(store: "Store", spec: "LearningSpec") -> "Learned":
         f"robot time, {info.behaviors} behaviors, {info.rows} rows, {info.resets} resets"
     )
     return learned
-
-
-def _as_json(store: "Store", learned: "Learned") -> dict[str, Any]:
-    """Return one run as JSON types."""
-    info = learned.info
-    return {
-        "run": info.id,
-        "tool": info.spec.tool,
-        "seed": info.spec.seed,
-        "new": learned.new,
-        "behaviors": info.behaviors,
-        "rows": info.rows,
-        "resets": info.resets,
-        "robot_seconds": info.robot_seconds,
-        "groups": [
-            {
-                "behavior": group.name,
-                "tried": group.tried,
-                "rows": group.rows,
-                "mean_movement": group.mean_movement,
-                "mean_dx": group.mean_dx,
-                "mean_dy": group.mean_dy,
-            }
-            for group in store.behavior_groups(info.id)
-        ],
-    }
-
-

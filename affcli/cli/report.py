@@ -6,8 +6,8 @@ from affcli.cli.terminal import show, show_json
 
 def report(*, database: Database = DEFAULT_DATABASE, as_json: AsJson = False) -> None:
     """Show tools learned, rows by behavior, trials beside the paper's, and failures by kind."""
+    from affcli.lab.overview import overview_of
     from affcli.report.overview import overview_json, overview_tables
-    from affcli.report.summaries import overview_of
     from affcli.store import open_store
 
     with open_store(database, create=False, write=False) as store:

@@ -43,13 +43,13 @@ def reproduce(
     checked_count("--workers", workers, MOST_WORKERS)
 
     from affcli.config import load_settings
+    from affcli.lab.overview import reproduction_of
     from affcli.lab.reproduction import reproduce as run_reproduction
     from affcli.report.reproduction import (
         failures_table,
         reproduction_json,
         reproduction_table,
     )
-    from affcli.report.summaries import reproduction_of
     from affcli.store import open_store
 
     settings = load_settings(config)
@@ -60,12 +60,12 @@ def reproduce(
             task = shown.add_task("reproducing", total=robots, status="")
             for saved in events:
                 shown.update(task, completed=saved, status=f"{saved} of {robots} robots")
-        result = reproduction_of(robots, store.successes(session), store.failures(session))
+        result = reproduction_of(store, session, robots)
     say(f"session {session}: {robots} robots, seed {seed}, saved in {database}")
     if as_json:
         show_json(reproduction_json(result))
     else:
-        show(reproduction_table(result), failures_table(result.failures, 96 * robots))
+        show(reproduction_table(result), failures_table(result.failures, result.trials))
 
 
 def _has_affinity() -> bool:

@@ -22,7 +22,8 @@ def sql(
     """
     from affcli.store import run_sql
 
-    columns, rows, cut = run_sql(database, query)
+    result = run_sql(database, query)
+    columns, rows = result.columns, result.rows
     if as_json:
         show_json([dict(zip(columns, map(_plain, row), strict=True)) for row in rows])
     else:
@@ -34,7 +35,7 @@ def sql(
         for row in rows:
             table.add_row(*("" if value is None else one_line(_plain(value)) for value in row))
         show(table)
-    if cut:
+    if result.truncated:
         say(f"only the first {len(rows)} rows are shown; add a limit or a where")
 
 

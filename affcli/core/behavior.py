@@ -1,4 +1,4 @@
-"""Binding and exploratory behaviors: their names, calls, and the wrist paths they give (§3.2, §5)."""
+"""Binding and exploratory behaviors: names, calls, and the wrist paths they give (§3.2, §5)."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What is truly on the table: for the simulation, the sensor and the experimenter, never the robot."""
+"""What is truly on the table: for simulation, sensor and experimenter, never for the robot."""
 
 from dataclasses import dataclass
 

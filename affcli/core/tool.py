@@ -1,7 +1,7 @@
 """The five tools of the paper, by their parts (§4, Figs. 1 and 9).
 
 Tool frame: origin at the grasp point, y along the handle away from the robot, x to the right. The
-tool keeps its orientation in the table frame, so a tool at wrist (x, y) is its parts moved by (x, y).
+tool keeps its orientation in the table frame: a tool at wrist (x, y) is its parts moved by (x, y).
 """
 
 from dataclasses import dataclass, replace

@@ -11,8 +11,7 @@ from affcli.core.observation import Movement, Observation
 
 
 class Truth(NamedTuple):
-    """Where the attractor truly was before and after a behavior: for science and replays, never
-    for the robot."""
+    """Where the attractor truly was before and after a behavior; never for the robot."""
 
     start: Pose
     end: Pose

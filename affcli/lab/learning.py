@@ -45,7 +45,7 @@ class LearningRun:
 
         The behavior during which the time runs out is the last.
         """
-        bench, spec = self.bench, self.spec
+        bench = self.bench
         records = babble(
             bench.robot,
             bench.sensor,
@@ -64,8 +64,7 @@ class LearningRun:
         """Whether the time or the number of behaviors is up."""
         if self.spec.behaviors is not None:
             return self._state.step >= self.spec.behaviors
-        assert self.spec.hours is not None
-        return self.bench.robot.clock >= 3600.0 * self.spec.hours
+        return self.bench.robot.clock >= 3600.0 * (self.spec.hours or 0.0)
 
     def checkpoint(self) -> dict[str, Any]:
         """Return, as JSON types, all that a later `LearningRun` needs to go on from here."""

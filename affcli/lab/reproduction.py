@@ -1,4 +1,4 @@
-"""The whole paper on many robots: each learns the five tools and does the 80 + 16 trials (§6, §7)."""
+"""The whole paper on many robots: five tools learned, 80 + 16 trials each (§6, §7)."""
 
 import signal
 from collections import deque
@@ -37,8 +37,8 @@ def one_robot(settings: Settings, seed: int, robot: int) -> RobotRecord:
         steps = tuple(run.steps())
         learned.append((spec, steps, run.bench.robot.clock))
         table = AffordanceTable(r.affordance for r, _ in steps if r.affordance is not None)
-        for trial in trial_specs(Protocol.EXTENSION_OF_REACH, name, name, seed, robot):
-            trials.append(whole_trial(trial, settings, table, world))
+        whole = trial_specs(Protocol.EXTENSION_OF_REACH, name, name, seed, robot)
+        trials += [whole_trial(trial, settings, table, world) for trial in whole]
         if name == BROKEN_TOOL:
             starts: dict[int, tuple[Point, Pose]] = {
                 r.step: (r.execution.wrist_start, truth.start) for r, truth in steps if r.affordance
@@ -86,9 +86,7 @@ def reproduce(
     store.finish_session(session, now())
 
 
-def _lives(
-    settings: Settings, seed: int, robots: list[int], workers: int
-) -> Iterator[RobotRecord]:
+def _lives(settings: Settings, seed: int, robots: list[int], workers: int) -> Iterator[RobotRecord]:
     """Yield the robots' lives in order, computed by `workers` processes.
 
     No more than a few finished lives wait at any time, so memory stays flat however many robots.

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from affcli.config import settings_from_json
 from affcli.core.trial import Counters, Outcome, Protocol, StepRecord, TrialEnd, TrialSpec
-from affcli.lab.trials import run_trial
+from affcli.lab.trials import Ended, run_trial
 from affcli.lab.versions import versions
 from affcli.simulation.world import World
 from affcli.store import LearningRunInfo, Store
@@ -74,15 +74,10 @@ def solve(
             )
             table, ids = store.affordance_table(run.id)
             trial = store.begin_trial(session, run.id, spec)
-            steps = run_trial(spec, settings, table, world)
-            while True:
-                try:
-                    record, truth = next(steps)
-                except StopIteration as stop:
-                    end: TrialEnd = stop.value
-                    break
+            steps = Ended(run_trial(spec, settings, table, world))
+            for record, truth in steps:
                 store.save_step(trial, spec, record, truth, ids[record.row.step])
                 yield SolvedStep(spec, record)
-            store.end_trial(trial, end)
-            yield SolvedTrial(spec, end)
+            store.end_trial(trial, steps.end)
+            yield SolvedTrial(spec, steps.end)
     store.finish_session(session, now())

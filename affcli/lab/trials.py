@@ -1,6 +1,7 @@
 """One testing trial (§7)."""
 
-from collections.abc import Generator, Mapping
+from collections.abc import Generator, Iterator, Mapping
+from typing import Generic, TypeVar
 
 from affcli.config import Settings
 from affcli.core.affordance import Affordance, replicates
@@ -21,6 +22,20 @@ from affcli.core.trial import (
 from affcli.lab.bench import TRIAL, Bench, stable_number, tool_named
 from affcli.procedures.extension_of_reach import extension_of_reach
 from affcli.simulation.world import World
+
+T = TypeVar("T")
+
+
+class Ended(Generic[T]):
+    """An iterator over the steps of a trial that keeps how the trial ended in `end`."""
+
+    end: TrialEnd
+
+    def __init__(self, steps: Generator[T, None, TrialEnd]) -> None:
+        self._steps = steps
+
+    def __iter__(self) -> Iterator[T]:
+        self.end = yield from self._steps
 
 
 def run_trial(
@@ -49,12 +64,10 @@ def run_trial(
         bench.behaviors.binding,
         settings.trial,
     )
-    while True:
-        try:
-            record = next(steps)
-        except StopIteration as end:
-            return end.value  # type: ignore[no-any-return]
+    trial = Ended(steps)
+    for record in trial:
         yield record, bench.truth()
+    return trial.end
 
 
 class LostAffordances:
@@ -104,14 +117,11 @@ def whole_trial(
         table: counters as learned; left as they are.
         lost: asked of each row tried, when the tool broke.
     """
-    steps: list[TrialStep] = []
-    trial = run_trial(spec, settings, table.as_learned(), world)
-    while True:
-        try:
-            record, truth = next(trial)
-        except StopIteration as stop:
-            return TrialRecord(spec, tuple(steps), stop.value)
-        steps.append(TrialStep(record, truth, lost.lost(record.row) if lost else None))
+    trial = Ended(run_trial(spec, settings, table.as_learned(), world))
+    steps = tuple(
+        TrialStep(record, truth, lost.lost(record.row) if lost else None) for record, truth in trial
+    )
+    return TrialRecord(spec, steps, trial.end)
 
 
 def trial_specs(

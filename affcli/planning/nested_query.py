@@ -29,7 +29,8 @@ class Choice(NamedTuple):
 
 def consistent_with_colors(table: AffordanceTable, seen: Observation) -> Rows:
     """Search 1: "all rows that have observation vectors consistent with the colors of the current
-    tool and object". Consistent: within `COLOR_TOLERANCE`."""
+    tool and object". Consistent: within `COLOR_TOLERANCE`.
+    """
     return table.with_colors_of(seen)
 
 
@@ -38,9 +39,7 @@ def likely_to_succeed(table: AffordanceTable, rows: Rows) -> Rows:
     return rows[2 * table.times_successful[rows] > table.times_used[rows]]
 
 
-def wrist_within_reach(
-    table: AffordanceTable, rows: Rows, seen: Observation, robot: Robot
-) -> Rows:
+def wrist_within_reach(table: AffordanceTable, rows: Rows, seen: Observation, robot: Robot) -> Rows:
     """Keep the rows whose wrist position the arm can take up.
 
     Not in the paper's list, yet its robot could not use such rows either. It stands before the sort
@@ -48,7 +47,8 @@ def wrist_within_reach(
     """
     x = seen.object_x - table.offset_x[rows]
     y = seen.object_y - table.offset_y[rows]
-    return rows[robot.reaches(x, y)]
+    within: Rows = rows[robot.reaches(x, y)]
+    return within
 
 
 def top_by_expected_distance(
@@ -79,7 +79,8 @@ def least_repositioning(
     table: AffordanceTable, rows: Rows, seen: Observation, wrist: Point
 ) -> int | None:
     """Search 4: the row "which minimizes the re-positioning of the tool relative to its current
-    location": the distance the wrist would travel. Of equal rows the older; None of none."""
+    location": the distance the wrist would travel. Of equal rows the older; None of none.
+    """
     if not len(rows):
         return None
     dx = table.offset_x[rows] - (seen.object_x - wrist.x)
@@ -87,9 +88,7 @@ def least_repositioning(
     return int(rows[np.argmin(dx * dx + dy * dy)])
 
 
-def choose_row(
-    table: AffordanceTable, seen: Observation, goal: GoalRegion, robot: Robot
-) -> Choice:
+def choose_row(table: AffordanceTable, seen: Observation, goal: GoalRegion, robot: Robot) -> Choice:
     """Run the nested searches in the paper's order and say how many rows each left.
 
     Args:

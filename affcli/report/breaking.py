@@ -97,9 +97,7 @@ def dead_rows(broken: Sequence[TrialRecord], missing_side: float) -> list[DeadRo
     return [died[number] for number in sorted(died)]
 
 
-def broken_json(
-    shape: str, missing_side: float, trials: Sequence[TrialRecord]
-) -> dict[str, Any]:
+def broken_json(shape: str, missing_side: float, trials: Sequence[TrialRecord]) -> dict[str, Any]:
     """Return what `broken_tables` shows as JSON types."""
     broken, whole = broken_and_whole(shape, trials)
     value: dict[str, Any] = {"becomes": shape, "paper": BROKEN_TOOL}

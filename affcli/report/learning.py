@@ -1,19 +1,21 @@
 """Tables of what was learned (§6.1)."""
 
 from collections.abc import Iterable, Sequence
-from typing import Protocol
+from typing import Any, Protocol
 
 from rich.table import Table
 
+from affcli.core.behavior import BehaviorCall
 from affcli.core.geometry import direction_degrees
+from affcli.core.trial import LearningSpec
 
 
 class BehaviorGroup(Protocol):
     """One moving behavior with one value of its parameter, in one learning run."""
 
     @property
-    def name(self) -> str:
-        """The behavior with its parameter, as ``extend arm 5``."""
+    def call(self) -> BehaviorCall:
+        """The behavior with its parameter."""
 
     @property
     def tried(self) -> int:
@@ -44,12 +46,8 @@ class LearnedTool(Protocol):
         """Its number in the database."""
 
     @property
-    def tool(self) -> str:
-        """The tool's name."""
-
-    @property
-    def seed(self) -> int:
-        """Its seed."""
+    def spec(self) -> LearningSpec:
+        """What it is a function of."""
 
     @property
     def status(self) -> str:
@@ -73,7 +71,7 @@ class LearnedTool(Protocol):
 
 
 def groups_table(tool: str, groups: Iterable[BehaviorGroup]) -> Table:
-    """Return the eight behavior-distance groups: tried, rows, mean movement and direction."""
+    """Return the behavior-distance groups: tried, rows, mean movement and direction."""
     table = Table(
         title=f"What the {tool} affords, by behavior",
         caption="direction: 0 right, 90 away from the robot, 180 left, 270 toward it",
@@ -85,7 +83,7 @@ def groups_table(tool: str, groups: Iterable[BehaviorGroup]) -> Table:
         table.add_column(column, justify="right")
     for group in groups:
         table.add_row(
-            group.name,
+            str(group.call),
             str(group.tried),
             str(group.rows),
             "-" if group.mean_movement is None else f"{group.mean_movement:.1f} in",
@@ -104,22 +102,14 @@ def _direction(group: BehaviorGroup) -> str:
 def learned_table(tools: Sequence[LearnedTool]) -> Table:
     """Return the learning runs: tool, seed, robot time, behaviors, rows, resets."""
     table = Table(title="Tools learned", title_justify="left")
-    for column, justify in (
-        ("run", "right"),
-        ("tool", "left"),
-        ("seed", "right"),
-        ("robot time", "right"),
-        ("behaviors", "right"),
-        ("rows", "right"),
-        ("resets", "right"),
-    ):
-        table.add_column(column, justify="left" if justify == "left" else "right")
+    for column in ("run", "tool", "seed", "robot time", "behaviors", "rows", "resets"):
+        table.add_column(column, justify="left" if column == "tool" else "right")
     for run in tools:
         unfinished = "" if run.status == "done" else " (unfinished)"
         table.add_row(
             str(run.id),
-            f"{run.tool}{unfinished}",
-            str(run.seed),
+            f"{run.spec.tool}{unfinished}",
+            str(run.spec.seed),
             clock(run.robot_seconds),
             str(run.behaviors),
             str(run.rows),
@@ -133,3 +123,33 @@ def clock(seconds: float) -> str:
     minutes, rest = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     return f"{hours} h {minutes:02} min" if hours else f"{minutes} min {rest:02} s"
+
+
+def groups_json(groups: Iterable[BehaviorGroup]) -> list[dict[str, Any]]:
+    """Return the behavior-distance groups as JSON types."""
+    return [
+        {
+            "behavior": group.call.name,
+            "params": dict(group.call.params),
+            "tried": group.tried,
+            "rows": group.rows,
+            "mean_movement": group.mean_movement,
+            "mean_dx": group.mean_dx,
+            "mean_dy": group.mean_dy,
+        }
+        for group in groups
+    ]
+
+
+def run_json(run: LearnedTool) -> dict[str, Any]:
+    """Return a learning run as JSON types."""
+    return {
+        "run": run.id,
+        "tool": run.spec.tool,
+        "seed": run.spec.seed,
+        "status": run.status,
+        "behaviors": run.behaviors,
+        "rows": run.rows,
+        "resets": run.resets,
+        "robot_seconds": run.robot_seconds,
+    }

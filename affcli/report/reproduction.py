@@ -20,14 +20,16 @@ class Reproduction:
         cells: successes of 4 of each robot, by (tool, goal).
         broken: successes of 16 of each robot with the broken tool.
         failures: how often each kind of failure occurred, over both experiments.
-        adaptation: mean tries on lost affordances in a trial, and the like, by name.
+        trials: all trials of both experiments.
+        tries_on_lost: tries on lost affordances with the broken tool, over all its trials.
     """
 
     robots: int
     cells: Mapping[tuple[str, int], Sequence[int]]
     broken: Sequence[int]
     failures: Mapping[str, int]
-    adaptation: Mapping[str, float]
+    trials: int
+    tries_on_lost: int
 
     @property
     def totals(self) -> list[int]:
@@ -55,7 +57,8 @@ def reproduction_json(result: Reproduction) -> dict[str, Any]:
         "total": _against(result.totals, TOTAL),
         "broken": _against(result.broken, BROKEN_TOOL),
         "failures": dict(result.failures),
-        "adaptation": dict(result.adaptation),
+        "trials": result.trials,
+        "tries_on_lost": result.tries_on_lost,
     }
 
 

@@ -31,7 +31,9 @@ class Spread:
         """Summarise one count a robot; ValueError when there are none."""
         mean = fmean(counts)
         error = Z95 * stdev(counts) / math.sqrt(len(counts)) if len(counts) > 1 else 0.0
-        return cls(mean, (mean - error, mean + error), quantile(counts, LOW), quantile(counts, HIGH))
+        return cls(
+            mean, (mean - error, mean + error), quantile(counts, LOW), quantile(counts, HIGH)
+        )
 
     def holds(self, count: int) -> bool:
         """Tell whether `count` lies in the central 95 % of robots."""

@@ -24,8 +24,10 @@ def explain_step(record: StepRecord) -> Text:
         verdict += ", row excluded from now on"
     lines = [
         f"  step {record.number}: row {row.step}, {row.exploratory}",
-        f"    rows left: colours {left.consistent}, probability > 1/2 {left.probable}, "
-        f"in reach {left.reachable}, top 20 % {left.nearest}, least re-positioning 1",
+        (
+            f"    rows left: colours {left.consistent}, probability > 1/2 {left.probable}, "
+            f"in reach {left.reachable}, top 20 % {left.nearest}, least re-positioning 1"
+        ),
         f"    expected {_movement(record.expected)}, seen {_movement(record.seen)}: {verdict}",
         f"    probability {successful}/{used} -> {after}",
     ]

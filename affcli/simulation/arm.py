@@ -22,8 +22,8 @@ WRIST_PITCH_MAX = math.radians(110.0)
 class JointAngles:
     """The five joint angles (rad).
 
-    waist: 0 straight ahead (+y), positive to the robot's left. shoulder: direction of the upper arm
-    over the horizontal. elbow: bend of the forearm below the upper arm's direction. pitch: turn of
+    waist: 0 straight ahead (+y), positive to the robot's left. shoulder: direction of the upper
+    arm over the horizontal. elbow: bend of the forearm below the upper arm's direction. pitch: turn of
     the hand from the forearm's direction, positive downward. roll: about the vertical hand.
     """
 
@@ -93,8 +93,9 @@ def joint_angles(arm: ArmGeometry, wrist: Point, height: float) -> JointAngles |
     waist = math.atan2(-wrist.x, wrist.y)
     within = (
         elbow <= math.radians(arm.elbow_max_degrees) + 1e-12
-        and math.radians(arm.shoulder_min_degrees) <= shoulder
-        and shoulder <= math.radians(arm.shoulder_max_degrees)
+        and math.radians(arm.shoulder_min_degrees)
+        <= shoulder
+        <= math.radians(arm.shoulder_max_degrees)
         and abs(pitch) <= WRIST_PITCH_MAX
         and abs(waist) <= math.radians(arm.waist_max_degrees) + 1e-12
     )

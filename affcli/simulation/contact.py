@@ -58,9 +58,7 @@ def _part_travel(
     return min(found, default=None)
 
 
-def _edge_travel(
-    a: Point, b: Point, direction: Point, center: Point, radius: float
-) -> list[float]:
+def _edge_travel(a: Point, b: Point, direction: Point, center: Point, radius: float) -> list[float]:
     """Return the travel at which the edge, moved out by `radius`, meets the centre, if it does."""
     ex, ey = b.x - a.x, b.y - a.y
     length = math.hypot(ex, ey)

@@ -1,8 +1,8 @@
 """Can any behavior, from any wrist position, touch an attractor that lies there?
 
 A tool held at wrist w touches a disc of radius R at p when p - w lies within R of the tool, that
-is when w lies in the tool turned about and grown by R, put at p. A behavior slides the wrist through
-its reach, so the attractor is out of reach when no such w lies in the reach.
+is when w lies in the tool turned about and grown by R, put at p. A behavior slides the wrist
+through its reach, so the attractor is out of reach when no such w lies in the reach.
 """
 
 import math

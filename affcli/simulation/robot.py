@@ -66,7 +66,7 @@ class SimulatedRobot:
         return Execution(call, status, start, self._world.wrist, self.clock - began)
 
     def _carry(self, path: WristPath) -> ExecutionStatus:
-        """Move lifted and lower the tool, or keep it lifted there when the attractor lies under it."""
+        """Move lifted and lower the tool; keep it lifted there when the attractor lies under it."""
         target = Point(on_grid(path.end.x), on_grid(path.end.y))
         if not self.reaches(np.array([target.x]), np.array([target.y]))[0]:
             return ExecutionStatus.OUT_OF_REACH

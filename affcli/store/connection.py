@@ -39,7 +39,7 @@ class Connected:
         """
         with self._transaction("BEGIN") as connection:
             # BEGIN takes no lock; the first read does.
-            patiently(lambda: self._driver.execute("SELECT 1 FROM sqlite_master"), self._timeout)
+            self._say("SELECT 1 FROM sqlite_master")
             yield connection
 
     @contextmanager
@@ -59,15 +59,20 @@ class Connected:
     def _transaction(self, begin: str) -> Iterator[sa.Connection]:
         """Begin, and at the end commit; roll back whatever goes wrong, ctrl-C too."""
         with faults_named(self.path, self._timeout):
-            patiently(lambda: self._driver.execute(begin), self._timeout)
+            self._say(begin)
             try:
                 yield self._connection
                 # While others read nobody can commit; the transaction stays open and is tried again.
-                patiently(lambda: self._driver.execute("COMMIT"), self._timeout)
+                self._say("COMMIT")
             finally:
                 if self._driver.in_transaction:
                     with suppress(sqlite3.Error):
                         self._driver.execute("ROLLBACK")
+
+    def _say(self, statement: str) -> None:
+        """Execute a statement that may have to wait for a lock."""
+        # Through SQLAlchemy, so that Alembic sees that a transaction has begun and begins none.
+        patiently(lambda: self._connection.exec_driver_sql(statement).close(), self._timeout)
 
 
 def insert_many(
@@ -80,9 +85,7 @@ def insert_many(
     """
     if rows:
         columns = [c.name for c in table.columns if c.name != "id"]
-        statement = sa.insert(table).compile(
-            dialect=connection.dialect, column_keys=columns
-        )
+        statement = sa.insert(table).compile(dialect=connection.dialect, column_keys=columns)
         connection.exec_driver_sql(str(statement), [tuple(row) for row in rows])
 
 

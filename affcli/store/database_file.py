@@ -103,7 +103,9 @@ def require_something(revision: str | None, path: Path) -> str:
         DatabaseError: the file is empty.
     """
     if revision is None:
-        raise DatabaseError(f"{one_line(path)}: an empty file; `affcli learn` makes a database of it")
+        raise DatabaseError(
+            f"{one_line(path)}: an empty file; `affcli learn` makes a database of it"
+        )
     return revision
 
 

@@ -1,7 +1,7 @@
 """What reports read: sums made by the database, returned as small records."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import sqlalchemy as sa
@@ -254,11 +254,11 @@ class Results(Connected):
 
     def trial_steps(self, trial_id: int) -> tuple[StoredStep, ...]:
         """Return the steps of a trial with the rows they tried."""
-        tried = step.join(affordance, affordance.c.id == step.c.affordance_id)
-        own = [c for c in affordance.columns if c.name != "step"]
+        # Both tables say where the attractor was: those of the step get a prefix.
+        own = [column.label(f"step_{column.name}") for column in step.columns]
         wanted = (
-            sa.select(step, affordance.c.step.label("row_step"), *own)
-            .select_from(tried)
+            sa.select(*own, affordance)
+            .select_from(step.join(affordance, affordance.c.id == step.c.affordance_id))
             .where(step.c.trial_id == trial_id)
             .order_by(step.c.number)
         )
@@ -328,4 +328,28 @@ def _row_use(*row: Any) -> RowUse:
 
 
 def _stored_step(row: sa.RowMapping) -> StoredStep:
-    """Return a step from its columns and those of the row it tried."""
+    """Return a step from its columns (``step_...``) and those of the row it tried."""
+    tried = replace(
+        affordance_from(row, as_learned=False),
+        times_used=row["step_times_used_before"],
+        times_successful=row["step_times_successful_before"],
+    )
+    lost = row["step_lost"]
+    return StoredStep(
+        survivors=Survivors(*(row[f"step_rows_{name}"] for name in Survivors._fields)),
+        row=tried,
+        seen_start=Point(row["step_start_object_x"], row["step_start_object_y"]),
+        seen_end=Point(row["step_end_object_x"], row["step_end_object_y"]),
+        expected=Movement(row["step_expected_dx"], row["step_expected_dy"], 0.0),
+        seen=Movement(row["step_seen_dx"], row["step_seen_dy"], 0.0),
+        replicated=bool(row["step_replicated"]),
+        died=bool(row["step_died"]),
+        lost=None if lost is None else bool(lost),
+        **{
+            name: row[f"step_{name}"]
+            for name in (
+                *("trial_id", "number", "clock", "affordance_id", "placing_status", "status"),
+                *("seen_distance", "times_used_after", "times_successful_after"),
+            )
+        },
+    )

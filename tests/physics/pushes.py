@@ -1,6 +1,7 @@
 """Pushes that the tests of this folder share: drawn from a seed, all of them touching the puck."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,8 @@ from affcli.core.geometry import ConvexPolygon, Point, Pose, distance_to_union
 from affcli.core.tool import paper_tools
 from affcli.core.workspace import Workspace
 from affcli.simulation.contact import travel_to_contact
-from affcli.simulation.pushing import PhysicsSettings, PushSimulator
+from affcli.simulation.physics_settings import PhysicsSettings
+from affcli.simulation.pushing import PushSimulator
 from affcli.simulation.wrist_motion import Stretch, on_grid, trapezoid
 from tests.physics.quasi_static import Push
 
@@ -39,6 +41,15 @@ def fork(left: float, right: float) -> tuple[ConvexPolygon, ...]:
     )
 
 
+def seat(left: float, right: float) -> Point:
+    """Return the centre of a puck that touches both bars of a fork."""
+    a, b = math.radians(left), math.radians(right)
+    clear = RADIUS + WORKSPACE.tools.part_width / 2.0
+    normals = np.array([[math.sin(a), math.cos(a)], [-math.sin(b), math.cos(b)]])
+    x, y = np.linalg.solve(normals, [clear, clear])
+    return Point(float(x), 6.0 + float(y))
+
+
 def wedge(degrees: float) -> tuple[ConvexPolygon, ...]:
     """Return an isosceles triangle whose sharp corner points along +x."""
     half = 3.0 * math.tan(math.radians(degrees / 2.0))
@@ -55,13 +66,11 @@ INCLINED_SHAPES: dict[str, tuple[ConvexPolygon, ...]] = {
     "wedge of 50 degrees": wedge(50.0),
     "wedge of 120 degrees": wedge(120.0),
 }
+FORK_ANGLES = ((45.0, 45.0), (30.0, 30.0), (20.0, 60.0), (75.0, 15.0))
 FORKS: dict[str, tuple[ConvexPolygon, ...]] = {
-    "fork of 45 and 45 degrees": fork(45.0, 45.0),
-    "fork of 20 and 60 degrees": fork(20.0, 60.0),
-    "fork of 30 and 30 degrees": fork(30.0, 30.0),
-    "fork of 75 and 15 degrees": fork(75.0, 15.0),
+    f"fork of {left:.0f} and {right:.0f} degrees": fork(left, right) for left, right in FORK_ANGLES
 }
-"""Shapes that hold the puck with two contacts at once, both loaded."""
+"""Shapes that, pushed ahead, hold the puck with two contacts at once, both loaded."""
 SHAPES = PAPER_SHAPES | INCLINED_SHAPES | FORKS
 
 
@@ -104,33 +113,40 @@ def draw_case(
 ) -> Case:
     """Return a push in which the tool meets the puck after `gap` inches.
 
-    The puck is drawn anywhere across the sweep of the tool: a third of the pushes start at less
-    than a radius beyond an edge of the sweep, so they meet a corner.
+    The puck is drawn anywhere across the sweep of the tool and up to a radius beyond, so that many
+    pushes meet a corner, and at any depth, so that some meet the inside of a hook.
     """
     wrist = Point(on_grid(rng.uniform(-4.0, 4.0)), on_grid(rng.uniform(6.0, 15.0)))
-    parts = [part.moved(wrist.x, wrist.y) for part in SHAPES[shape]]
-    corners = np.array([v for part in parts for v in part.vertices])
+    tool = SHAPES[shape]
+    corners = np.array([corner for part in tool for corner in part.vertices])
     aside = Point(-direction.y, direction.x)
     across = corners @ np.array(aside)
     along = corners @ np.array(direction)
     while True:
-        offset = rng.uniform(across.min() - RADIUS, across.max() + RADIUS)
-        depth = rng.uniform(along.min(), along.max() + RADIUS)
-        puck = Point(*(depth * np.array(direction) + offset * np.array(aside)))
-        travel = travel_to_contact(parts, direction, 60.0, puck, RADIUS)
+        side = rng.uniform(across.min() - RADIUS, across.max() + RADIUS)
+        ahead = rng.uniform(along.min(), along.max() + RADIUS)
+        puck = Point(
+            ahead * direction.x + side * aside.x,
+            ahead * direction.y + side * aside.y,
+        )
+        travel = travel_to_contact(tool, direction, 60.0, puck, RADIUS)
         if not travel:
             continue
         back = travel - gap
         puck = Point(puck.x - back * direction.x, puck.y - back * direction.y)
-        if distance_to_union(parts, puck) > RADIUS:
-            return Case(shape, wrist, direction, distance, Pose(*puck, rng.uniform(-3.0, 3.0)))
+        if distance_to_union(tool, puck) > RADIUS:
+            angle = rng.uniform(-3.0, 3.0)
+            pose = Pose(float(wrist.x + puck.x), float(wrist.y + puck.y), float(angle))
+            return Case(shape, wrist, direction, distance, pose)
 
 
-def draw_cases(seed: int, each: int, shapes: dict[str, tuple[ConvexPolygon, ...]]) -> list[Case]:
-    """Return `each` pushes of 5 in for every shape and direction."""
+def draw_cases(
+    seed: int, each: int, shapes: Iterable[str] = tuple(SHAPES), furthest: float = 0.02
+) -> list[Case]:
+    """Return `each` pushes of 5 in for every shape and direction, with gaps up to `furthest`."""
     rng = np.random.default_rng(seed)
     return [
-        draw_case(rng, shape, direction)
+        draw_case(rng, shape, direction, gap=rng.uniform(0.0, furthest))
         for shape in shapes
         for direction in DIRECTIONS
         for _ in range(each)

@@ -11,7 +11,8 @@ done by the trapezoidal rule: `limit_surface`. No ellipsoid is fitted.
 
 **One contact.** It lies on the rim at -R n, with n the unit normal into the disc and t = n turned
 left. A contact force N (n + f t) is, by symmetry, met by a velocity along itself, v = v_n (1, f),
-and by the turning s = R |w| / |v| at which torque / force of the limit surface is |f| / sqrt(1 + f^2).
+and by the turning s = R |w| / |v| at which torque / force of the limit surface is
+|f| / sqrt(1 + f^2).
 The rim at the contact then moves by v_n K(f) along t, with K(f) = f + sqrt(1 + f^2) s(f), which
 grows with f. So the modes are solved outright: the contact sticks with the f for which K(f) is the
 tool's ratio of tangential to normal velocity, if that |f| <= mu; otherwise it slides with f = +-mu.
@@ -25,6 +26,7 @@ of the stride. Strides and quadrature nodes are chosen by the tests of convergen
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
@@ -33,6 +35,7 @@ from numpy.typing import NDArray
 from affcli.core.geometry import ConvexPolygon, Point, Pose
 
 Array: TypeAlias = NDArray[np.float64]
+Indices: TypeAlias = NDArray[np.intp]
 
 STRIDE = 2e-3
 """Travel of the tool in a step (in)."""
@@ -92,23 +95,6 @@ class ContactLaw:
     rim: Array
     turning: Array
 
-    @classmethod
-    def of(cls, friction: float, nodes: int = NODES) -> "ContactLaw":
-        """Return the law of a contact with the coefficient `friction`."""
-        turning = np.tan(np.linspace(0.0, 0.5 * np.pi, TURNINGS, endpoint=False))
-        pairs = [limit_surface(1.0 / s, nodes) if s else (1.0, 0.0) for s in turning]
-        lever = np.array([torque / force for force, torque in pairs])
-        needed = np.searchsorted(lever, min(friction, 1e6) / np.hypot(1.0, friction)) + 1
-        lever, turning = lever[:needed], turning[:needed]
-        force = lever / np.sqrt(1.0 - lever**2)
-        turn = np.hypot(1.0, force) * turning
-        end = np.interp(friction, force, turn)
-        force = np.append(force[force < friction], friction)
-        turn = np.append(turn[: force.size - 1], end)
-        force = np.concatenate([-force[:0:-1], force])
-        turn = np.concatenate([-turn[:0:-1], turn])
-        return cls(force, force + turn, turn)
-
     def __call__(self, normal: Array, tangential: Array) -> tuple[Array, Array]:
         """Return tangential displacement of the centre and clockwise turn of the rim (in, in).
 
@@ -120,6 +106,24 @@ class ContactLaw:
         ratio = tangential / normal
         force = np.interp(ratio, self.rim, self.force)
         return normal * force, normal * np.interp(ratio, self.rim, self.turning)
+
+
+@lru_cache
+def contact_law(friction: float, nodes: int = NODES) -> ContactLaw:
+    """Return the law of a contact with the coefficient `friction`."""
+    turning = np.tan(np.linspace(0.0, 0.5 * np.pi, TURNINGS, endpoint=False))
+    pairs = [limit_surface(1.0 / s, nodes) if s else (1.0, 0.0) for s in turning]
+    lever = np.array([torque / force for force, torque in pairs])
+    needed = int(np.searchsorted(lever, friction / np.hypot(1.0, friction))) + 1
+    lever, turning = lever[:needed], turning[:needed]
+    force = lever / np.sqrt(1.0 - lever**2)
+    turn = np.hypot(1.0, force) * turning
+    end = np.interp(friction, force, turn)
+    force = np.append(force[force < friction], friction)
+    turn = np.append(turn[: force.size - 1], end)
+    force = np.concatenate([-force[:0:-1], force])
+    turn = np.concatenate([-turn[:0:-1], turn])
+    return ContactLaw(force, force + turn, turn)
 
 
 class _Tools:
@@ -137,7 +141,7 @@ class _Tools:
         square = np.sum(self._edge**2, axis=3)
         self._scale = np.divide(1.0, square, out=np.zeros_like(square), where=square > 0.0)
 
-    def contacts(self, rows: NDArray[np.intp], at: Array) -> tuple[Array, Array]:
+    def contacts(self, rows: Indices, at: Array) -> tuple[Array, Array]:
         """Return, for each part, the distance of the points `at` and the unit normal toward them.
 
         The points lie outside: the disc's centre never comes within a radius of a part.
@@ -151,6 +155,94 @@ class _Tools:
         distance = np.sqrt(np.take_along_axis(square, nearest, axis=2)[..., 0])
         normal = np.take_along_axis(gap, nearest[..., None], axis=2)[:, :, 0] / distance[..., None]
         return distance, normal
+
+
+@dataclass(frozen=True, slots=True)
+class _Touched:
+    """The pushes in which some part overlaps the disc, one row each.
+
+    Args:
+        rows: which pushes.
+        at: centres of the discs, in the frame in which the tools rest where they began (in).
+        overlap: of the disc with each part, negative where they are apart (in).
+        normal: unit vectors from each part into the disc.
+        move: displacement of the tool in this step (in).
+    """
+
+    rows: Indices
+    at: Array
+    overlap: Array
+    normal: Array
+    move: Array
+
+    def only(self, chosen: Indices | NDArray[np.bool_]) -> "_Touched":
+        """Return some of the rows."""
+        return _Touched(
+            self.rows[chosen],
+            self.at[chosen],
+            self.overlap[chosen],
+            self.normal[chosen],
+            self.move[chosen],
+        )
+
+
+class _Mechanics:
+    """How discs answer to the overlap of one step."""
+
+    def __init__(self, tools: _Tools, law: ContactLaw, radius: float) -> None:
+        self._tools = tools
+        self._law = law
+        self._radius = radius
+
+    def touched(self, at: Array, move: Array) -> _Touched:
+        """Return the pushes whose tool overlaps the disc."""
+        distance, normal = self._tools.contacts(np.arange(len(at)), at)
+        every = _Touched(np.arange(len(at)), at, self._radius - distance, normal, move)
+        return every.only(every.overlap.max(axis=1) > CLOSED)
+
+    def answer(self, touched: _Touched) -> Array:
+        """Return how the discs move (in, in) and turn (rad): (N, 3)."""
+        first = np.argmax(touched.overlap, axis=1)
+        answer = self._one_contact(touched, first)
+        left = self._left(touched, answer)
+        held = np.flatnonzero(left.max(axis=1) > CLOSED)
+        if held.size == 0:
+            return answer
+        first, second = first[held], np.argmax(left[held], axis=1)
+        touched = touched.only(held)
+        # The other part alone, if it touches by now and leaves the first one free.
+        alone = self._one_contact(touched, second)
+        touches = touched.overlap[np.arange(held.size), second] > CLOSED
+        frees = self._left(touched, alone).max(axis=1) <= CLOSED
+        both = _two_contacts(touched, first, second)
+        answer[held] = np.where((touches & frees)[:, None], alone, both)
+        left = self._left(touched, answer[held]).max(axis=1)
+        if np.any(left > np.sum(touched.move**2, axis=1)):
+            raise ArithmeticError(f"{left.max():.6f} in of overlap left: three parts hold the disc")
+        return answer
+
+    def _left(self, touched: _Touched, answer: Array) -> Array:
+        """Return the overlap with each part that an answer leaves (in)."""
+        return self._radius - self._tools.contacts(touched.rows, touched.at + answer[:, :2])[0]
+
+    def _one_contact(self, touched: _Touched, part: Indices) -> Array:
+        """Return how the discs move and turn when only the contact with `part` acts: (N, 3)."""
+        each = np.arange(part.size)
+        n = touched.normal[each, part]
+        t = np.stack([-n[:, 1], n[:, 0]], axis=1)
+        depth = np.maximum(touched.overlap[each, part], CLOSED)
+        aside, turned = self._law(depth, np.sum(touched.move * t, axis=1))
+        shift = depth[:, None] * n + aside[:, None] * t
+        return np.column_stack([shift, -turned / self._radius])
+
+
+def _two_contacts(touched: _Touched, first: Indices, second: Indices) -> Array:
+    """Return how the discs move when both contacts stay closed: (N, 3), without turning."""
+    each = np.arange(first.size)
+    normals = np.stack([touched.normal[each, first], touched.normal[each, second]], axis=1)
+    depths = np.stack([touched.overlap[each, first], touched.overlap[each, second]], axis=1)
+    shift = np.linalg.solve(normals, depths[..., None])[..., 0]
+    return np.column_stack([shift, np.zeros(first.size)])
 
 
 def push_all(
@@ -172,84 +264,16 @@ def push_all(
     Raises:
         ArithmeticError: three parts hold the disc at once, which this solver does not know.
     """
-    law = ContactLaw.of(friction, nodes)
-    tools = _Tools(pushes)
-    pucks = np.array([push.puck for push in pushes])
-    direction = np.array([push.direction for push in pushes])
-    length = np.array([push.length for push in pushes])
-    steps = int(np.ceil(length.max() / stride - 1e-9))
-    gone = np.zeros(len(pushes))
-    for step in range(1, steps + 1):
+    mechanics = _Mechanics(_Tools(pushes), contact_law(friction, nodes), radius)
+    pucks = np.array([push.puck for push in pushes], dtype=np.float64)
+    direction = np.array([push.direction for push in pushes], dtype=np.float64)
+    length = np.array([push.length for push in pushes], dtype=np.float64)
+    gone = np.zeros_like(length)
+    for step in range(1, int(np.ceil(length.max() / stride - 1e-9)) + 1):
         ahead = np.minimum(step * stride, length)
         move = (ahead - gone)[:, None] * direction
         gone = ahead
-        # In the tool's frame the tool rests and the disc drifts back.
-        at = pucks[:, :2] - gone[:, None] * direction
-        rows = np.arange(len(pushes))
-        distance, normal = tools.contacts(rows, at)
-        hit = np.flatnonzero(radius - distance.min(axis=1) > CLOSED)
-        if hit.size:
-            overlap = radius - distance[hit]
-            pucks[hit] += _respond(tools, law, hit, at[hit], overlap, normal[hit], move[hit], radius)
+        touched = mechanics.touched(pucks[:, :2] - gone[:, None] * direction, move)
+        if touched.rows.size:
+            pucks[touched.rows] += mechanics.answer(touched)
     return pucks
-
-
-def _respond(
-    tools: _Tools,
-    law: ContactLaw,
-    rows: NDArray[np.intp],
-    at: Array,
-    overlap: Array,
-    normal: Array,
-    move: Array,
-    radius: float,
-) -> Array:
-    """Return how the touched discs move and turn in this step: (H, 3)."""
-    first = np.argmax(overlap, axis=1)
-    answer = _one_contact(law, first, overlap, normal, move, radius)
-    left = radius - tools.contacts(rows, at + answer[:, :2])[0]
-    stuck = np.flatnonzero(left.max(axis=1) > CLOSED)
-    if stuck.size == 0:
-        return answer
-    rows, at, overlap, normal, move = (a[stuck] for a in (rows, at, overlap, normal, move))
-    first, second = first[stuck], np.argmax(left[stuck], axis=1)
-    # The other part alone, if it touches already and leaves the first one free.
-    touching = overlap[np.arange(stuck.size), second] > CLOSED
-    alone = _one_contact(law, second, np.maximum(overlap, CLOSED), normal, move, radius)
-    left = radius - tools.contacts(rows, at + alone[:, :2])[0]
-    free = touching & (left.max(axis=1) <= CLOSED)
-    both = _two_contacts(first, second, overlap, normal)
-    answer[stuck] = np.where(free[:, None], alone, both)
-    left = radius - tools.contacts(rows, at + answer[stuck, :2])[0]
-    if np.any(left.max(axis=1) > 1e-4):
-        raise ArithmeticError(f"{left.max():.6f} in of overlap left: three parts hold the disc")
-    return answer
-
-
-def _one_contact(
-    law: ContactLaw,
-    part: NDArray[np.intp],
-    overlap: Array,
-    normal: Array,
-    move: Array,
-    radius: float,
-) -> Array:
-    """Return how the discs move and turn when only the contact with `part` acts: (H, 3)."""
-    each = np.arange(part.size)
-    n = normal[each, part]
-    t = np.stack([-n[:, 1], n[:, 0]], axis=1)
-    depth = overlap[each, part]
-    aside, turned = law(depth, np.sum(move * t, axis=1))
-    shift = depth[:, None] * n + aside[:, None] * t
-    return np.column_stack([shift, -turned / radius])
-
-
-def _two_contacts(
-    first: NDArray[np.intp], second: NDArray[np.intp], overlap: Array, normal: Array
-) -> Array:
-    """Return how the discs move when both contacts stay closed: (H, 3), without turning."""
-    each = np.arange(first.size)
-    rows = np.stack([normal[each, first], normal[each, second]], axis=1)
-    depth = np.stack([overlap[each, first], overlap[each, second]], axis=1)
-    shift = np.linalg.solve(rows, depth[..., None])[..., 0]
-    return np.column_stack([shift, np.zeros(first.size)])

@@ -1,0 +1,65 @@
+"""The only room that knows the database: one SQLite file, its schema made by ``migrations/``.
+
+What other rooms use stands in ``__all__``; each name is imported when it is first asked for, so that
+``affcli sql`` needs no SQLAlchemy and opening a database of the right schema no Alembic.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from affcli.store.info import DatabaseInfo, database_info
+    from affcli.store.learning import LearningRunInfo, LearningStep
+    from affcli.store.opening import open_store, upgrade
+    from affcli.store.query import QueryResult, run_sql
+    from affcli.store.repository import Store
+    from affcli.store.results import (
+        BehaviorGroup,
+        OutcomeCount,
+        RowUse,
+        StoredStep,
+        SuccessCount,
+        TrialResult,
+    )
+    from affcli.store.trials import SessionInfo, SessionKind
+
+__all__ = [
+    "BehaviorGroup",
+    "DatabaseInfo",
+    "LearningRunInfo",
+    "LearningStep",
+    "OutcomeCount",
+    "QueryResult",
+    "RowUse",
+    "SessionInfo",
+    "SessionKind",
+    "Store",
+    "StoredStep",
+    "SuccessCount",
+    "TrialResult",
+    "database_info",
+    "open_store",
+    "run_sql",
+    "upgrade",
+]
+
+_HOMES = {
+    "info": ("DatabaseInfo", "database_info"),
+    "learning": ("LearningRunInfo", "LearningStep"),
+    "opening": ("open_store", "upgrade"),
+    "query": ("QueryResult", "run_sql"),
+    "repository": ("Store",),
+    "results": (
+        *("BehaviorGroup", "OutcomeCount", "RowUse", "StoredStep", "SuccessCount", "TrialResult"),
+    ),
+    "trials": ("SessionInfo", "SessionKind"),
+}
+"""Which file each public name lives in."""
+
+
+def __getattr__(name: str) -> object:
+    """Import a public name when it is first asked for."""
+    for home, names in _HOMES.items():
+        if name in names:
+            return getattr(import_module(f"affcli.store.{home}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

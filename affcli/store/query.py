@@ -1,0 +1,160 @@
+"""One SELECT that a person wrote, run so that it can neither change nor hang anything."""
+
+import sqlite3
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NoReturn
+
+from affcli.errors import BadInputError, one_line
+from affcli.store.database_file import look, opened, require_place, require_something
+from affcli.store.faults import faults_named
+from affcli.store.identity import require_current
+from affcli.store.patience import PATIENCE, patiently
+
+Value = str | int | float | bytes | None
+
+MAX_ROWS = 10_000
+MAX_SECONDS = 2.0
+LARGEST_VALUE = 1_000_000
+"""Bytes of one value or one row; the longest that affcli writes is some 3,000."""
+LARGEST_RESULT = 64_000_000
+"""Bytes of text and blobs in the whole result."""
+OPCODES_BETWEEN_LOOKS = 1_000
+"""How many steps of SQLite's machine pass between two looks at the clock: some 20 microseconds."""
+
+LIMITS = {
+    sqlite3.SQLITE_LIMIT_LENGTH: LARGEST_VALUE,
+    sqlite3.SQLITE_LIMIT_SQL_LENGTH: 100_000,
+    sqlite3.SQLITE_LIMIT_LIKE_PATTERN_LENGTH: 1_000,
+    sqlite3.SQLITE_LIMIT_EXPR_DEPTH: 200,
+    sqlite3.SQLITE_LIMIT_COMPOUND_SELECT: 100,
+    sqlite3.SQLITE_LIMIT_COLUMN: 1_000,
+    sqlite3.SQLITE_LIMIT_ATTACHED: 0,
+    sqlite3.SQLITE_LIMIT_WORKER_THREADS: 0,
+}
+
+ALLOWED = frozenset(
+    {
+        sqlite3.SQLITE_SELECT,
+        sqlite3.SQLITE_READ,
+        sqlite3.SQLITE_FUNCTION,
+        sqlite3.SQLITE_RECURSIVE,
+    }
+)
+"""All that a query may do. Opening read-only is not enough: ATTACH and VACUUM INTO would still write
+other files."""
+
+FORBIDDEN_FUNCTIONS = frozenset({"load_extension", "fts3_tokenizer", "readfile", "writefile"})
+
+
+@dataclass(frozen=True, slots=True)
+class QueryResult:
+    """What a query gave.
+
+    Args:
+        columns: their names.
+        rows: their values.
+        truncated: there were more rows than were asked for, or than fit.
+    """
+
+    columns: tuple[str, ...]
+    rows: tuple[tuple[Value, ...], ...]
+    truncated: bool
+
+
+def run_sql(
+    path: Path,
+    text: str,
+    *,
+    max_seconds: float = MAX_SECONDS,
+    max_rows: int = MAX_ROWS,
+    timeout: float = PATIENCE,
+) -> QueryResult:
+    """Run one SELECT.
+
+    Args:
+        path: the database.
+        text: one statement.
+        max_seconds: it is stopped after these.
+        max_rows: no more rows are returned.
+        timeout: seconds to wait for a lock that another process holds.
+
+    Raises:
+        BadInputError: not one SELECT; an error in it; too long, too large.
+        DatabaseError: the database cannot be read.
+    """
+    require_place(path, create=False, write=False)
+    with opened(path, "rw", timeout) as driver:
+        # Not yet read-only: after a kill the file must first be set right from its journal.
+        require_current(require_something(look(driver, path, timeout), path), path)
+    with opened(path, "ro", timeout) as driver, faults_named(path, timeout):
+        _confine(driver)
+        return patiently(lambda: _run(driver, text, max_seconds, max_rows), timeout)
+
+
+def _confine(driver: sqlite3.Connection) -> None:
+    """Leave the connection nothing but reading values of a bearable size."""
+    driver.execute("PRAGMA query_only = ON")
+    driver.execute("PRAGMA trusted_schema = OFF")
+    for limit, value in LIMITS.items():
+        driver.setlimit(limit, value)
+    driver.text_factory = lambda raw: raw.decode("utf-8", "replace")
+    driver.set_authorizer(_judge)
+
+
+def _judge(action: int, _: str | None, function: str | None, *__: str | None) -> int:
+    """Allow reading; deny the rest."""
+    if action not in ALLOWED:
+        return sqlite3.SQLITE_DENY
+    if action == sqlite3.SQLITE_FUNCTION and function in FORBIDDEN_FUNCTIONS:
+        return sqlite3.SQLITE_DENY
+    return sqlite3.SQLITE_OK
+
+
+def _run(driver: sqlite3.Connection, text: str, max_seconds: float, max_rows: int) -> QueryResult:
+    """Run the statement until it ends, or time, rows or bytes are used up."""
+    deadline = time.monotonic() + max_seconds
+    driver.set_progress_handler(lambda: time.monotonic() > deadline, OPCODES_BETWEEN_LOOKS)
+    rows: list[tuple[Value, ...]] = []
+    size = 0
+    try:
+        cursor = driver.execute(text)
+        if cursor.description is None:
+            raise BadInputError("nothing to run; give one SELECT")
+        for row in cursor:
+            size += sum(len(value) for value in row if isinstance(value, (str, bytes)))
+            if len(rows) == max_rows or size > LARGEST_RESULT:
+                break
+            rows.append(row)
+        else:
+            row = None
+        cursor.close()
+    except (sqlite3.Error, sqlite3.Warning, ValueError) as error:
+        _explain(error, max_seconds)
+    columns = tuple(column[0] for column in cursor.description)
+    return QueryResult(columns, tuple(rows), truncated=row is not None)
+
+
+def _explain(error: Exception, max_seconds: float) -> NoReturn:
+    """Raise what a person can mend as a BadInputError; the database's own faults as they are."""
+    code = getattr(error, "sqlite_errorcode", None)
+    if code is None:  # from Python's driver: two statements, a NUL, half a character
+        raise BadInputError(f"sql: {one_line(error)}; give one SELECT") from error
+    match code & 0xFF:
+        case sqlite3.SQLITE_ERROR:
+            raise BadInputError(f"sql: {one_line(error)}") from error
+        case sqlite3.SQLITE_AUTH:
+            raise BadInputError(
+                f"sql: {one_line(error)}; only SELECT is allowed, the database is opened to be read"
+            ) from error
+        case sqlite3.SQLITE_INTERRUPT:
+            raise BadInputError(
+                f"sql: stopped after {max_seconds:g} s; ask for less (where, limit)"
+            ) from error
+        case sqlite3.SQLITE_TOOBIG:
+            raise BadInputError(
+                f"sql: a value of more than {LARGEST_VALUE} bytes; ask for less"
+            ) from error
+        case _:
+            raise error
