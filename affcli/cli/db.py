@@ -24,15 +24,15 @@ def info(*, database: Database = DEFAULT_DATABASE, as_json: AsJson = False) -> N
     """Say what the file is: schema revision, size, journal mode, rows of each table."""
     from affcli.store import database_info
 
-    facts = {
-        key: str(v) if key == "path" else v for key, v in asdict(database_info(database)).items()
-    }
+    found = asdict(database_info(database))
+    facts = {**found, "path": str(database)}
     if as_json:
         show_json(facts)
         return
     from rich.table import Table
 
     table = Table(show_header=False)
-    for name, value in {**facts, **facts.pop("counts")}.items():
+    counts: dict[str, int] = facts.pop("counts")
+    for name, value in {**facts, **counts}.items():
         table.add_row(name, str(value))
     show(table)

@@ -28,6 +28,7 @@ class AffordanceTable:
         movement_x, movement_y, movement_z: expected movement of each row (n,), in, table frame.
         offset_x, offset_y: attractor as seen from the wrist at the start of each row (n,), in.
         times_used, times_successful: the counters (n,), int64.
+        probable: whether the replication probability is greater than 1/2 (n,), kept up to date.
     """
 
     def __init__(self, rows: Iterable[Affordance] = ()) -> None:
@@ -40,6 +41,7 @@ class AffordanceTable:
         self.times_successful = np.array(
             [row.times_successful for row in self._rows], dtype=np.int64
         )
+        self.probable = 2 * self.times_successful > self.times_used
         self._class_of, self._class_colors = _color_classes(self._rows)
 
     def __len__(self) -> int:
@@ -62,6 +64,7 @@ class AffordanceTable:
         twin.__dict__.update(self.__dict__)
         twin.times_used = self.times_used.copy()
         twin.times_successful = self.times_successful.copy()
+        twin.probable = self.probable.copy()
         return twin
 
     def with_colors_of(self, seen: Observation) -> Rows:
@@ -75,6 +78,7 @@ class AffordanceTable:
         """Count one use of the row at `position`, as §3.2 does in testing trials."""
         self.times_used[position] += 1
         self.times_successful[position] += int(success)
+        self.probable[position] = 2 * self.times_successful[position] > self.times_used[position]
 
 
 def _consistent(a: tuple[float, ...], b: tuple[float, ...]) -> bool:

@@ -52,9 +52,15 @@ class SimulatedRobot:
         """
         inner = max(self._low.inner, self._high.inner)
         outer = min(self._low.outer, self._high.outer)
-        squared = x * x + y * y
-        ring = (squared >= inner * inner) & (squared <= outer * outer)
-        return ring & (np.abs(np.arctan2(-x, y)) <= self._low.waist_max)
+        squared = x * x
+        squared += y * y
+        held = squared >= inner * inner
+        held &= squared <= outer * outer
+        # Within the waist's range of straight ahead: y >= r cos(waist), without an arc tangent.
+        np.sqrt(squared, out=squared)
+        squared *= math.cos(self._low.waist_max)
+        held &= y >= squared
+        return held
 
     def execute(self, call: BehaviorCall, seen: Observation | None) -> Execution:
         """Execute one behavior to its end (see the protocol in `core.ports`)."""

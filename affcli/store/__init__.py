@@ -1,7 +1,7 @@
 """The only room that knows the database: one SQLite file, its schema made by ``migrations/``.
 
-What other rooms use stands in ``__all__``; each name is imported when it is first asked for, so that
-``affcli sql`` needs no SQLAlchemy and opening a database of the right schema no Alembic.
+What other rooms use stands in ``__all__``. Each name is imported when it is first asked for, so
+``affcli sql`` needs no SQLAlchemy, and opening a database of the right schema no Alembic.
 """
 
 from importlib import import_module
@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from affcli.store.info import DatabaseInfo, database_info
     from affcli.store.learning import LearningRunInfo, LearningStep
     from affcli.store.opening import open_store, upgrade
+    from affcli.store.packing import PackedRobot, pack_robot
     from affcli.store.query import QueryResult, run_sql
     from affcli.store.repository import Store
     from affcli.store.results import (
@@ -29,6 +30,7 @@ __all__ = [
     "LearningRunInfo",
     "LearningStep",
     "OutcomeCount",
+    "PackedRobot",
     "QueryResult",
     "RowUse",
     "SessionInfo",
@@ -39,6 +41,7 @@ __all__ = [
     "TrialResult",
     "database_info",
     "open_store",
+    "pack_robot",
     "run_sql",
     "upgrade",
 ]
@@ -47,6 +50,7 @@ _HOMES = {
     "info": ("DatabaseInfo", "database_info"),
     "learning": ("LearningRunInfo", "LearningStep"),
     "opening": ("open_store", "upgrade"),
+    "packing": ("PackedRobot", "pack_robot"),
     "query": ("QueryResult", "run_sql"),
     "repository": ("Store",),
     "results": (

@@ -11,13 +11,13 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 
 from affcli.errors import DatabaseError, one_line
-from affcli.store.faults import REMEDIES, faults_named
+from affcli.store.faults import REMEDIES, faults_named, primary_code
 from affcli.store.identity import stored_revision
 from affcli.store.patience import ATTEMPT, patiently
 
-CHECKED_UP_TO = 32 * 2**20
-"""Bytes up to which the whole file is checked when it is opened. In a larger one a damaged page is
-found when it is read."""
+CHECKED_UP_TO = 4 * 2**20
+"""Bytes up to which the whole file is checked when it is opened, which takes some 15 ms a megabyte:
+five tools and their trials. In a larger file a damaged page is found when it is read."""
 
 
 def require_place(path: Path, *, create: bool, write: bool) -> None:
@@ -64,12 +64,33 @@ def opened(path: Path, mode: str, timeout: float) -> Iterator[sqlite3.Connection
         mode: of SQLite's URIs: ``ro``, ``rw`` or ``rwc``.
         timeout: seconds named in an error about a lock.
     """
-    # as_uri quotes what a URI would read as its own: ? # %
-    uri = f"{path.absolute().as_uri()}?mode={mode}"
     with faults_named(path, timeout):
-        driver = sqlite3.connect(uri, uri=True, timeout=ATTEMPT, isolation_level=None)
+        driver = _connected(path, mode)
+        if mode != "rwc" and _wants_shared_memory(driver):
+            driver.close()
+            driver = _connected(path, "ro&immutable=1")
     with closing(driver):
         yield driver
+
+
+def _connected(path: Path, mode: str) -> sqlite3.Connection:
+    """Return a connection to a file by URI mode."""
+    # as_uri quotes what a URI would read as its own: ? # %
+    uri = f"{path.absolute().as_uri()}?mode={mode}"
+    return sqlite3.connect(uri, uri=True, timeout=ATTEMPT, isolation_level=None)
+
+
+def _wants_shared_memory(driver: sqlite3.Connection) -> bool:
+    """Tell whether reading fails for want of a file beside the database.
+
+    A WAL database in a folder that cannot be written: SQLite could not make its -shm file there.
+    Nobody else can write there either, so it may be read as one that never changes.
+    """
+    try:
+        driver.execute("SELECT 1 FROM sqlite_master")
+    except sqlite3.Error as error:
+        return primary_code(error) == sqlite3.SQLITE_CANTOPEN
+    return False
 
 
 def look(driver: sqlite3.Connection, path: Path, timeout: float) -> str | None:
@@ -88,8 +109,7 @@ def look(driver: sqlite3.Connection, path: Path, timeout: float) -> str | None:
         try:
             patiently(lambda: driver.execute("SELECT 1 FROM sqlite_master"), timeout)
             revision = stored_revision(driver, path)
-            if path.stat().st_size <= CHECKED_UP_TO:
-                _require_sound(driver, path)
+            _require_sound(driver, path)
             return revision
         finally:
             if driver.in_transaction:
@@ -110,7 +130,14 @@ def require_something(revision: str | None, path: Path) -> str:
 
 
 def _require_sound(driver: sqlite3.Connection, path: Path) -> None:
-    """Refuse a file whose pages contradict one another."""
-    finding = driver.execute("PRAGMA quick_check(1)").fetchone()[0]
-    if finding != "ok":
+    """Refuse a file that was cut off, or whose pages contradict one another."""
+    size = path.stat().st_size
+    pages, page = (driver.execute(f"PRAGMA page_{k}").fetchone()[0] for k in ("count", "size"))
+    if size and not pages:  # SQLite takes a few bytes for an empty file and would overwrite them
+        raise DatabaseError(f"{one_line(path)}: {REMEDIES[sqlite3.SQLITE_NOTADB]}")
+    # The last pages of a WAL database may be in its journal still.
+    whole = size >= pages * page or Path(f"{path}-wal").exists()
+    if whole and size <= CHECKED_UP_TO:
+        whole = driver.execute("PRAGMA quick_check(1)").fetchone()[0] == "ok"
+    if not whole:
         raise DatabaseError(f"{one_line(path)}: {REMEDIES[sqlite3.SQLITE_CORRUPT]}")

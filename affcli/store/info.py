@@ -42,7 +42,7 @@ COUNTS = {
     "trials": "SELECT count(*) FROM trial",
     "steps": "SELECT coalesce(sum(steps), 0) FROM trial",
 }
-"""Sums of what the runs and trials say: counting millions of behaviors would read the whole file."""
+"""Sums of what runs and trials say: counting millions of behaviors would read the whole file."""
 
 
 def database_info(path: Path, *, timeout: float = PATIENCE) -> DatabaseInfo:

@@ -20,7 +20,8 @@ from affcli.store.mapping import (
     settings_key,
     to_json,
 )
-from affcli.store.rows import LearningRunRow, affordance, behavior, learning_run
+from affcli.store.rows import LearningRunRow
+from affcli.store.tables import affordance, behavior, learning_run
 
 LearningStep = tuple[BabblingRecord, Truth]
 """What one behavior of a learning run gave, and what truly happened."""
@@ -88,13 +89,10 @@ class LearningRuns(Connected):
             return found
         with self.writing() as connection:
             # Another process may have begun it in between.
-            found = _info(connection, wanted)
-            if found is None:
+            if _info(connection, wanted) is None:
                 row = new_learning_run(spec, versions, now, session_id)
                 insert_one(connection, learning_run, row)
-                found = _info(connection, wanted)
-            assert found is not None
-            return found
+            return _info_from(connection.execute(wanted).mappings().one())
 
     def append_learning(
         self,

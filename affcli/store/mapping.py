@@ -4,13 +4,11 @@ import hashlib
 import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any
-
-import sqlalchemy as sa
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
 
 from affcli.core.affordance import Affordance
 from affcli.core.behavior import BehaviorCall, BehaviorName
-from affcli.core.change_detection import change_detected
 from affcli.core.geometry import direction_degrees
 from affcli.core.observation import Observation
 from affcli.core.trial import (
@@ -24,6 +22,9 @@ from affcli.core.trial import (
 from affcli.errors import DatabaseError
 from affcli.store.rows import END_OBSERVATION, START_OBSERVATION, BehaviorRow, StepRow, TrialRow
 
+if TYPE_CHECKING:  # a worker that packs a robot's life needs no SQLAlchemy
+    from sqlalchemy import RowMapping
+
 
 def settings_key(settings: str) -> str:
     """Return the name by which equal settings are found: the SHA-256 of their canonical JSON."""
@@ -35,6 +36,7 @@ def to_json(value: Mapping[str, Any]) -> str:
     return json.dumps(value, separators=(",", ":"), allow_nan=False)
 
 
+@lru_cache(maxsize=256)
 def params_to_json(call: BehaviorCall) -> str:
     """Return a call's parameters as ``{"offset_distance": 5.0}``."""
     return json.dumps(dict(call.params), allow_nan=False)
@@ -93,7 +95,7 @@ def behavior_row(run: int, record: BabblingRecord, truth: Truth) -> BehaviorRow:
         true_end_x=truth.end.x,
         true_end_y=truth.end.y,
         true_end_angle=truth.end.angle,
-        change_detected=change_detected(start, end),
+        change_detected=record.affordance is not None,
     )
 
 
@@ -118,7 +120,7 @@ def affordance_row(run: int, tool: str, row: Affordance) -> tuple[object, ...]:
     )
 
 
-def affordance_from(row: sa.RowMapping, *, as_learned: bool) -> Affordance:
+def affordance_from(row: "RowMapping", *, as_learned: bool) -> Affordance:
     """Return an affordance from its row.
 
     Args:
@@ -137,7 +139,7 @@ def affordance_from(row: sa.RowMapping, *, as_learned: bool) -> Affordance:
     )
 
 
-def learning_spec_from(row: sa.RowMapping) -> LearningSpec:
+def learning_spec_from(row: "RowMapping") -> LearningSpec:
     """Return what a stored learning run is a function of."""
     return LearningSpec(
         tool=row["tool"],
@@ -177,16 +179,16 @@ def trial_end_columns(end: TrialEnd) -> dict[str, Any]:
 
 
 def step_row(
-    trial: int, record: StepRecord, truth: Truth, affordance_id: int, *, lost: bool | None
+    trial: int, affordance_id: int, record: StepRecord, truth: Truth, lost: bool | None
 ) -> StepRow:
-    """Return the row of one step of trial `trial`."""
-    # When the tool could not be lowered, nothing was executed: the placing says where the wrist was.
+    """Return the row of one step of trial `trial`, which tried affordance `affordance_id`."""
+    # When the tool could not be lowered nothing was executed: the placing tells of the wrist.
     moved = record.execution or record.placing
     return StepRow(
         trial_id=trial,
+        affordance_id=affordance_id,
         number=record.number,
         clock=record.clock,
-        affordance_id=affordance_id,
         rows_consistent=record.survivors.consistent,
         rows_probable=record.survivors.probable,
         rows_reachable=record.survivors.reachable,

@@ -8,10 +8,11 @@ from pathlib import Path
 import sqlalchemy as sa
 
 from affcli.store.database_file import look, opened, require_place, require_something
+from affcli.store.faults import faults_named
 from affcli.store.identity import REVISION, is_older, require_current, stored_revision
 from affcli.store.journal import set_journal_mode
 from affcli.store.migrate import run_migrations
-from affcli.store.patience import PATIENCE
+from affcli.store.patience import PATIENCE, patiently
 from affcli.store.repository import Store
 
 
@@ -38,8 +39,8 @@ def open_store(
         with _engine(driver).connect() as connection:
             store = Store(connection, driver, path, timeout)
             if revision is None:
-                _make_schema(store, driver)
-            _prepare(driver, write=write or create)
+                _migrate(store, driver)
+            _prepare(driver, path, timeout, write=write or create)
             yield store
 
 
@@ -57,19 +58,20 @@ def upgrade(path: Path, *, timeout: float = PATIENCE) -> tuple[str, str]:
         before = require_something(look(driver, path, timeout), path)
         if is_older(before):
             with _engine(driver).connect() as connection:
-                store = Store(connection, driver, path, timeout)
-                with store.writing():
-                    run_migrations(connection)
+                _migrate(Store(connection, driver, path, timeout), driver)
         else:
             require_current(before, path)
         return before, REVISION
 
 
-def _make_schema(store: Store, driver: sqlite3.Connection) -> None:
-    """Make the schema in an empty file, unless another process has just done so."""
+def _migrate(store: Store, driver: sqlite3.Connection) -> None:
+    """Run the migrations that are missing, unless another process has just done so."""
     with store.writing() as connection:
-        if stored_revision(driver, store.path) is None:
+        revision = stored_revision(driver, store.path)
+        if revision is None or is_older(revision):
             run_migrations(connection)
+        else:
+            require_current(revision, store.path)
 
 
 def _engine(driver: sqlite3.Connection) -> sa.Engine:
@@ -77,11 +79,12 @@ def _engine(driver: sqlite3.Connection) -> sa.Engine:
     return sa.create_engine("sqlite://", creator=lambda: driver, poolclass=sa.StaticPool)
 
 
-def _prepare(driver: sqlite3.Connection, *, write: bool) -> None:
-    """Set what SQLite keeps for a connection and not in the file."""
+def _prepare(driver: sqlite3.Connection, path: Path, timeout: float, *, write: bool) -> None:
+    """Set what SQLite keeps for a connection, and the journal that suits its version."""
     driver.execute("PRAGMA foreign_keys = ON")
     driver.execute("PRAGMA synchronous = FULL")
     if write:
-        set_journal_mode(driver)
+        with faults_named(path, timeout):
+            patiently(lambda: set_journal_mode(driver), timeout)
     else:
         driver.execute("PRAGMA query_only = ON")

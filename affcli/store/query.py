@@ -42,8 +42,8 @@ ALLOWED = frozenset(
         sqlite3.SQLITE_RECURSIVE,
     }
 )
-"""All that a query may do. Opening read-only is not enough: ATTACH and VACUUM INTO would still write
-other files."""
+"""All that a query may do. Opening read-only is not enough: ATTACH and VACUUM INTO would still
+write other files."""
 
 FORBIDDEN_FUNCTIONS = frozenset({"load_extension", "fts3_tokenizer", "readfile", "writefile"})
 

@@ -13,7 +13,7 @@ from affcli.core.observation import Movement
 from affcli.core.trial import Outcome, Protocol, Survivors
 from affcli.store.connection import Connected
 from affcli.store.mapping import affordance_from, behavior_call, reading_what_was_written
-from affcli.store.rows import affordance, behavior, session, step, trial
+from affcli.store.tables import affordance, behavior, session, step, trial
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,11 +201,11 @@ class Results(Connected):
             tool: only those of this tool.
         """
         t, s = trial.c, session.c
+        which = (t.session_id, t.robot, t.protocol, t.tool, t.shape, t.goal, t.start)
+        ending = (t.outcome, t.steps, t.robot_seconds)
+        run, of = t.learning_run_id.label("run_id"), s.kind.label("session_kind")
         wanted = (
-            sa.select(
-                *(t.id, s.kind, t.session_id, t.learning_run_id, t.robot, t.protocol, t.tool),
-                *(t.shape, t.goal, t.start, t.outcome, t.steps, t.robot_seconds),
-            )
+            sa.select(t.id, of, run, *which, *ending)
             .select_from(trial.join(session, s.id == t.session_id))
             .where(t.outcome.is_not(None))
             .order_by(t.id)
@@ -213,8 +213,10 @@ class Results(Connected):
         for column, value in ((t.session_id, session_id), (s.kind, kind), (t.tool, tool)):
             if value is not None:
                 wanted = wanted.where(column == value)
+        with self.reading() as connection:
+            rows = connection.execute(wanted).mappings().all()
         with reading_what_was_written("a trial"):
-            return tuple(_trial_result(*row) for row in self._all(wanted))
+            return tuple(map(_trial_result, rows))
 
     def success_counts(self, session_id: int) -> tuple[SuccessCount, ...]:
         """Return the successes of a session by robot, protocol, tool, shape and goal.
@@ -281,24 +283,25 @@ class Results(Connected):
             *(a.id, t.robot, a.step, a.exploratory_behavior, a.exploratory_params),
             *(a.start_wrist_to_object_x, a.start_wrist_to_object_y),
         )
+        used = (
+            sa.func.max(s.lost).label("lost"),
+            sa.func.count(s.trial_id.distinct()).label("trials"),
+            sa.func.count().label("tries"),
+            sa.func.sum(s.replicated).label("successes"),
+            sa.func.sum(s.died).label("deaths"),
+        )
+        all_three = trial.join(step, s.trial_id == t.id).join(affordance, a.id == s.affordance_id)
         wanted = (
-            sa.select(
-                *row,
-                sa.func.max(s.lost),
-                sa.func.count(s.trial_id.distinct()),
-                sa.func.count(),
-                sa.func.sum(s.replicated),
-                sa.func.sum(s.died),
-            )
-            .select_from(
-                trial.join(step, s.trial_id == t.id).join(affordance, a.id == s.affordance_id)
-            )
+            sa.select(*row, *used)
+            .select_from(all_three)
             .where(t.session_id == session_id, t.protocol == protocol.value)
             .group_by(*row)
             .order_by(t.robot, a.id)
         )
+        with self.reading() as connection:
+            rows = connection.execute(wanted).mappings().all()
         with reading_what_was_written(f"a step of session {session_id}"):
-            return tuple(_row_use(*row) for row in self._all(wanted))
+            return tuple(map(_row_use, rows))
 
     def _all(self, wanted: sa.Select[Any]) -> list[tuple[Any, ...]]:
         """Return all rows of a query."""
@@ -306,24 +309,20 @@ class Results(Connected):
             return [tuple(row) for row in connection.execute(wanted)]
 
 
-def _trial_result(*row: Any) -> TrialResult:
-    """Return a trial's result from its columns in order."""
-    before, protocol, (tool, shape, goal, start), outcome = row[:5], row[5], row[6:10], row[10]
-    ending = row[11:]
-    return TrialResult(
-        *before, Protocol(protocol), tool, shape, goal, start, Outcome(outcome), *ending
-    )
+def _trial_result(row: sa.RowMapping) -> TrialResult:
+    """Return a trial's result from its columns."""
+    protocol, outcome = Protocol(row["protocol"]), Outcome(row["outcome"])
+    return TrialResult(**{**row, "protocol": protocol, "outcome": outcome})
 
 
-def _row_use(*row: Any) -> RowUse:
-    """Return a row's use from its columns in order."""
-    *which, name, params, x, y, lost, trials, tries, successes, deaths = row
+def _row_use(row: sa.RowMapping) -> RowUse:
+    """Return a row's use from its columns and sums."""
     return RowUse(
-        *which,
-        behavior_call(name, params),
-        Point(x, y),
-        None if lost is None else bool(lost),
-        *(trials, tries, successes, deaths),
+        affordance_id=row["id"],
+        exploratory=behavior_call(row["exploratory_behavior"], row["exploratory_params"]),
+        offset=Point(row["start_wrist_to_object_x"], row["start_wrist_to_object_y"]),
+        lost=None if row["lost"] is None else bool(row["lost"]),
+        **{n: row[n] for n in ("robot", "step", "trials", "tries", "successes", "deaths")},
     )
 
 

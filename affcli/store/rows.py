@@ -5,8 +5,6 @@ Only ``migrations/`` makes schema; a test compares the two.
 
 from typing import NamedTuple
 
-import sqlalchemy as sa
-
 from affcli.core.observation import Observation
 
 
@@ -108,9 +106,9 @@ class StepRow(NamedTuple):
     """One step of a testing trial."""
 
     trial_id: int
+    affordance_id: int
     number: int
     clock: float
-    affordance_id: int
     rows_consistent: int
     rows_probable: int
     rows_reachable: int
@@ -163,17 +161,3 @@ AFFORDANCE_COLUMNS = (
     "times_successful",
 )
 """An affordance is a tuple of these: its 24 components are better made than written out."""
-
-
-def _table(name: str, *columns: str) -> sa.TableClause:
-    return sa.table(name, *map(sa.column, columns))
-
-
-session = _table("session", "id", *SessionRow._fields)
-learning_run = _table("learning_run", "id", *LearningRunRow._fields)
-behavior = _table("behavior", *BehaviorRow._fields)
-affordance = _table("affordance", "id", *AFFORDANCE_COLUMNS)
-trial = _table("trial", "id", *TrialRow._fields)
-step = _table("step", *StepRow._fields)
-
-TABLES = (session, learning_run, behavior, affordance, trial, step)

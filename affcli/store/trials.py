@@ -18,7 +18,7 @@ from affcli.core.trial import (
 )
 from affcli.errors import DatabaseError, one_line
 from affcli.store.connection import Connected, insert_many, insert_one
-from affcli.store.learning import insert_learning_steps, new_learning_run
+from affcli.store.learning import new_learning_run
 from affcli.store.mapping import (
     reading_what_was_written,
     settings_key,
@@ -27,7 +27,9 @@ from affcli.store.mapping import (
     trial_end_columns,
     trial_row,
 )
-from affcli.store.rows import SessionRow, affordance, learning_run, session, step, trial
+from affcli.store.packing import PackedRobot, PackedTrial, pack_robot, pack_trial
+from affcli.store.rows import SessionRow
+from affcli.store.tables import affordance, behavior, learning_run, session, step, trial
 
 SessionKind = Literal["solve", "break-tool", "reproduce"]
 """Which command a session is."""
@@ -157,9 +159,7 @@ class Trials(Connected):
         with self.writing() as connection:
             if spec.counters is Counters.STORED:
                 self._count_use(connection, record, affordance_id)
-            insert_many(
-                connection, step, [step_row(trial_id, record, truth, affordance_id, lost=None)]
-            )
+            insert_one(connection, step, step_row(trial_id, affordance_id, record, truth, None))
 
     def end_trial(self, trial_id: int, end: TrialEnd) -> None:
         """Save how a trial ended."""
@@ -183,7 +183,8 @@ class Trials(Connected):
             affordance_ids: of each row of that table by its learning step.
         """
         with self.writing() as connection:
-            _insert_trials(connection, session_id, run_id, trials, affordance_ids)
+            packed = [pack_trial(record) for record in trials]
+            _insert_trials(connection, session_id, run_id, packed, affordance_ids)
 
     def saved_robots(self, session_id: int) -> frozenset[int]:
         """Return the numbers of the robots that a reproduction has saved already."""
@@ -192,41 +193,45 @@ class Trials(Connected):
             return frozenset(connection.scalars(wanted))
 
     def save_robot(
-        self, session_id: int, record: RobotRecord, versions: Mapping[str, str], now: str
+        self,
+        session_id: int,
+        robot: RobotRecord | PackedRobot,
+        versions: Mapping[str, str],
+        now: str,
     ) -> bool:
         """Save the whole life of one robot of a reproduction in one transaction.
 
         Args:
             session_id: the reproduction.
-            record: its learning runs and its trials.
+            robot: its learning runs and its trials; packed when another process lived them.
             versions: what it was made with.
             now: ISO text, UTC.
 
         Returns:
             False when this robot was saved before; nothing is written then.
         """
+        packed = robot if isinstance(robot, PackedRobot) else pack_robot(robot)
         with self.writing() as connection:
             is_there = sa.select(learning_run.c.id).where(
-                _part_of(session_id), learning_run.c.robot == record.robot
+                _part_of(session_id), learning_run.c.robot == packed.robot
             )
             if connection.execute(is_there.limit(1)).first() is not None:
                 return False
-            for spec, steps, seconds in record.learned:
-                made = sum(r.affordance is not None for r, _ in steps)
-                row = new_learning_run(spec, versions, now, session_id)._replace(
+            for run in packed.runs:
+                row = new_learning_run(run.spec, versions, now, session_id)._replace(
                     status="done",
-                    behaviors=len(steps),
-                    rows=made,
-                    resets=sum(r.resets for r, _ in steps),
-                    redraws=sum(r.redraws for r, _ in steps),
-                    robot_seconds=seconds,
+                    behaviors=len(run.behaviors),
+                    rows=len(run.affordances),
+                    resets=run.resets,
+                    redraws=run.redraws,
+                    robot_seconds=run.robot_seconds,
                     finished_at=now,
                 )
                 run_id = insert_one(connection, learning_run, row)
-                insert_learning_steps(connection, run_id, spec.tool, steps)
-                trials = [t for t in record.trials if t.spec.tool == spec.tool]
+                insert_many(connection, behavior, [(run_id, *row) for row in run.behaviors])
+                insert_many(connection, affordance, [(run_id, *row) for row in run.affordances])
                 ids = _affordance_ids(connection, run_id)
-                _insert_trials(connection, session_id, run_id, trials, ids)
+                _insert_trials(connection, session_id, run_id, run.trials, ids)
             return True
 
     def _count_use(self, connection: sa.Connection, record: StepRecord, row_id: int) -> None:
@@ -254,19 +259,19 @@ def _insert_trials(
     connection: sa.Connection,
     session_id: int,
     run_id: int,
-    trials: Sequence[TrialRecord],
+    trials: Sequence[PackedTrial],
     affordance_ids: Mapping[int, int],
 ) -> None:
     """Insert trials with their steps."""
-    rows = []
-    for record in trials:
-        begun = trial_row(session_id, run_id, record.spec)
-        trial_id = insert_one(connection, trial, begun._replace(**trial_end_columns(record.end)))
-        rows += [
-            step_row(trial_id, s.record, s.truth, affordance_ids[s.record.row.step], lost=s.lost)
-            for s in record.steps
+    steps: list[tuple[object, ...]] = []
+    for packed in trials:
+        row = packed.row._replace(session_id=session_id, learning_run_id=run_id)
+        trial_id = insert_one(connection, trial, row)
+        steps += [
+            (trial_id, affordance_ids[tried], *row)
+            for tried, row in zip(packed.tried, packed.steps, strict=True)
         ]
-    insert_many(connection, step, rows)
+    insert_many(connection, step, steps)
 
 
 def _affordance_ids(connection: sa.Connection, run_id: int) -> dict[int, int]:

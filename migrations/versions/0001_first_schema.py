@@ -217,7 +217,7 @@ def _readable(params: str) -> str:
 
 
 def _observation(when: str) -> str:
-    """Write an observation as ``object (x, y, z) from wrist (x, y, z) object rgb (r, g, b) ...``."""
+    """Write an observation as ``object (x, y, z) from wrist (x, y, z) object rgb ...``."""
     columns = [f"{when}_{name}" for name in OBSERVATION]
     # Adding 0.0 makes the -0.0 that rounding may give a plain 0.
     values = [f"round({name}, 2) + 0.0" for name in columns[:6]]

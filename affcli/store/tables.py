@@ -1,0 +1,27 @@
+"""The tables for queries, from the tuple types of their rows."""
+
+import sqlalchemy as sa
+
+from affcli.store.rows import (
+    AFFORDANCE_COLUMNS,
+    BehaviorRow,
+    LearningRunRow,
+    SessionRow,
+    StepRow,
+    TrialRow,
+)
+
+
+def _table(name: str, *columns: str) -> sa.TableClause:
+    """Name a table and its columns."""
+    return sa.table(name, *map(sa.column, columns))
+
+
+session = _table("session", "id", *SessionRow._fields)
+learning_run = _table("learning_run", "id", *LearningRunRow._fields)
+behavior = _table("behavior", *BehaviorRow._fields)
+affordance = _table("affordance", "id", *AFFORDANCE_COLUMNS)
+trial = _table("trial", "id", *TrialRow._fields)
+step = _table("step", *StepRow._fields)
+
+TABLES = (session, learning_run, behavior, affordance, trial, step)

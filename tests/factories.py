@@ -1,0 +1,107 @@
+"""Small builders of what the tests are about, each with a default for what a test leaves open."""
+
+from collections.abc import Iterable
+
+from hypothesis import strategies as st
+
+from affcli.config import Settings
+from affcli.core.affordance import Affordance
+from affcli.core.affordance_table import AffordanceTable
+from affcli.core.behavior import EXTEND_ARM, GRASP, BehaviorCall
+from affcli.core.geometry import Point
+from affcli.core.observation import Movement, Observation
+from affcli.core.task import GoalRegion
+from affcli.core.tool import PUCK_COLOR, TOOL_COLORS, Color, ToolName
+from affcli.core.trial import LearningSpec
+from affcli.lab.bench import Bench, tool_named
+from affcli.simulation.world import World
+
+TOOL_COLOR = TOOL_COLORS[ToolName("t-hook")]
+BINDING = BehaviorCall.of(GRASP, {"grasp_point": 1.0})
+EXTEND_5 = BehaviorCall.of(EXTEND_ARM, {"offset_distance": 5.0})
+
+EIGHTH = 0.125
+eighths = st.integers(-320, 320).map(lambda n: n * EIGHTH)
+"""Lengths up to 40 in on a binary grid: sums, differences and squares of them are exact, so that a
+tie is a tie whichever way it is computed."""
+places = st.builds(Point, eighths, eighths)
+seeds = st.integers(0, 2**63 - 1)
+
+
+def observation(
+    at: Point = Point(0.0, 24.0),
+    *,
+    wrist: Point = Point(0.0, 16.0),
+    object_color: Iterable[float] = PUCK_COLOR,
+    tool_color: Iterable[float] = TOOL_COLOR,
+) -> Observation:
+    """Return what a sensor without noise sees with the attractor at `at`."""
+    offset = (at.x - wrist.x, at.y - wrist.y, 0.0)
+    return Observation(at.x, at.y, 0.0, *offset, *object_color, *tool_color)
+
+
+def moved_by(dx: float, dy: float) -> Movement:
+    """Return a movement on the table."""
+    return Movement(dx, dy, 0.0)
+
+
+def affordance(
+    step: int = 1,
+    *,
+    moved: tuple[float, float] = (0.0, 5.0),
+    offset: Point = Point(0.0, 8.0),
+    at: Point = Point(0.0, 24.0),
+    used: int = 1,
+    successful: int = 1,
+    call: BehaviorCall = EXTEND_5,
+    object_color: Color = PUCK_COLOR,
+    tool_color: Color = TOOL_COLOR,
+) -> Affordance:
+    """Return a row whose attractor, at `offset` from the wrist, moved by `moved`."""
+    wrist = Point(at.x - offset.x, at.y - offset.y)
+    end = Point(at.x + moved[0], at.y + moved[1])
+    start_seen, end_seen = (
+        observation(place, wrist=wrist, object_color=object_color, tool_color=tool_color)
+        for place in (at, end)
+    )
+    return Affordance(
+        step,
+        BINDING,
+        call,
+        start_seen,
+        end_seen,
+        times_used=used,
+        times_successful=successful,
+    )
+
+
+def table_of(*rows: Affordance) -> AffordanceTable:
+    """Return a table of these rows."""
+    return AffordanceTable(rows)
+
+
+def goal_at(x: float, y: float, half_width: float = 2.0) -> GoalRegion:
+    """Return a goal region with its centre at (x, y)."""
+    return GoalRegion(1, Point(x, y), half_width)
+
+
+def bench_with(tool: str, *key: int, settings: Settings | None = None) -> Bench:
+    """Return a robot at a table of its own, with a tool in its hand at the table's centre."""
+    settings = settings or Settings()
+    bench = Bench.of(settings, World(settings.workspace, settings.physics), *(key or (0,)))
+    bench.world.tool = tool_named(settings, tool)
+    return bench
+
+
+def learning_spec(
+    tool: str = "t-hook",
+    *,
+    seed: int = 0,
+    robot: int = 0,
+    behaviors: int | None = 20,
+    hours: float | None = None,
+    settings: Settings | None = None,
+) -> LearningSpec:
+    """Return the spec of a short learning run; of a timed one when `hours` is given."""
+    limit = None if hours is not None else behaviors
+    return LearningSpec(tool, seed, robot, hours, limit, (settings or Settings()).to_json())

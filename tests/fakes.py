@@ -1,0 +1,174 @@
+"""Named fakes of the three protocols in `affcli.core.ports`: a table without physics or noise.
+
+The three share a `FakeTable`. What a behavior does to the attractor, which wrist positions are in
+reach and when lowering the tool is blocked are scripted by the test.
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from itertools import repeat
+
+import numpy as np
+from numpy.typing import NDArray
+
+from affcli.core.behavior import (
+    GRASP,
+    POSITION_WRIST,
+    BehaviorCall,
+    Execution,
+    ExecutionStatus,
+)
+from affcli.core.geometry import Point
+from affcli.core.observation import Observation
+from affcli.core.task import GoalRegion
+from affcli.core.tool import Color
+from tests.factories import TOOL_COLOR, observation
+
+Effect = Callable[[BehaviorCall], tuple[float, float]]
+"""By how much an exploratory behavior moves the attractor (in)."""
+
+CALL_SECONDS = 4.0
+"""What every behavior of the fake robot takes: a power of two, so that clocks add up exactly."""
+
+
+def no_effect(call: BehaviorCall) -> tuple[float, float]:
+    """Leave the attractor alone."""
+    return 0.0, 0.0
+
+
+def scripted(movements: Iterable[tuple[float, float]]) -> Effect:
+    """Move the attractor by one movement after the other, then no more."""
+    coming = iter(movements)
+    return lambda call: next(coming, (0.0, 0.0))
+
+
+def everywhere(place: Point) -> bool:
+    """Say yes to every place."""
+    return True
+
+
+def nowhere(place: Point) -> bool:
+    """Say no to every place."""
+    return False
+
+
+@dataclass(slots=True)
+class FakeTable:
+    """What the three fakes share: where attractor, wrist and goal are."""
+
+    attractor: Point = Point(0.0, 24.0)
+    wrist: Point = Point(0.0, 16.0)
+    goal: GoalRegion | None = None
+    tool_color: Color = TOOL_COLOR
+
+
+@dataclass(slots=True)
+class FakeRobot:
+    """A `Robot` without an arm: it goes where it is asked to, and the attractor moves by script.
+
+    Attributes:
+        executed: every call with the observation it was given, in order.
+        effect: how an exploratory behavior moves the attractor.
+        placings: how each position wrist ends, one after the other; done when they run out.
+        endings: how each exploratory behavior ends, one after the other; done when they run out.
+        reachable: which wrist positions are in reach.
+    """
+
+    table: FakeTable
+    effect: Effect = no_effect
+    placings: Iterable[ExecutionStatus] = ()
+    endings: Iterable[ExecutionStatus] = ()
+    reachable: Callable[[Point], bool] = everywhere
+    clock: float = 0.0
+    executed: list[tuple[BehaviorCall, Observation | None]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.placings = iter(self.placings)
+        self.endings = iter(self.endings)
+
+    @property
+    def wrist(self) -> Point:
+        return self.table.wrist
+
+    @property
+    def calls(self) -> list[BehaviorCall]:
+        """The calls executed, without observations."""
+        return [call for call, _ in self.executed]
+
+    def reaches(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.bool_]:
+        places = map(Point, x.tolist(), y.tolist())
+        return np.array([self.reachable(place) for place in places], dtype=bool)
+
+    def execute(self, call: BehaviorCall, seen: Observation | None) -> Execution:
+        self.executed.append((call, seen))
+        start, status = self.table.wrist, ExecutionStatus.DONE
+        if call.name == POSITION_WRIST:
+            assert seen is not None
+            status = next(_ongoing(self.placings))
+            self.table.wrist = Point(seen.object_x - call["x"], seen.object_y - call["y"])
+        elif call.name != GRASP:
+            status = next(_ongoing(self.endings))
+            dx, dy = self.effect(call)
+            at = self.table.attractor
+            self.table.attractor = Point(at.x + dx, at.y + dy)
+        self.clock += CALL_SECONDS
+        return Execution(call, status, start, self.table.wrist, CALL_SECONDS)
+
+
+def _ongoing(script: Iterable[ExecutionStatus]) -> Iterator[ExecutionStatus]:
+    """Go on with a script, then with `done` for ever."""
+    yield from script
+    yield from repeat(ExecutionStatus.DONE)
+
+
+@dataclass(slots=True)
+class FakeSensor:
+    """A `Sensor` without noise.
+
+    Attributes:
+        taken: every observation given, in order.
+        goals_seen: how often the goal was looked at.
+    """
+
+    table: FakeTable
+    taken: list[Observation] = field(default_factory=list)
+    goals_seen: int = 0
+
+    def observe(self) -> Observation:
+        table = self.table
+        self.taken.append(
+            observation(table.attractor, wrist=table.wrist, tool_color=table.tool_color)
+        )
+        return self.taken[-1]
+
+    def observe_goal(self) -> GoalRegion:
+        self.goals_seen += 1
+        if self.table.goal is None:
+            raise LookupError("there is no goal region on the table")
+        return self.table.goal
+
+
+@dataclass(slots=True)
+class FakeExperimenter:
+    """An `Experimenter` who calls a place lost by rule and puts the attractor back by list.
+
+    Attributes:
+        lost: which places of the attractor are out of the tool's reach.
+        places: where the attractor is put back, one after the other.
+        put_back: how often it was.
+    """
+
+    table: FakeTable
+    lost: Callable[[Point], bool] = nowhere
+    places: Iterable[Point] = ()
+    put_back: int = 0
+
+    def __post_init__(self) -> None:
+        self.places = iter(self.places)
+
+    def attractor_out_of_reach(self) -> bool:
+        return self.lost(self.table.attractor)
+
+    def put_attractor_back(self) -> None:
+        self.table.attractor = next(iter(self.places))
+        self.put_back += 1

@@ -1,0 +1,138 @@
+"""What tests of several processes run in the others: ``python -m tests.store.children WHAT PATH``.
+
+Each function says "ready" on stdout when the test may go on.
+"""
+
+import os
+import signal
+import sqlite3
+import sys
+import time
+from pathlib import Path
+
+from affcli.errors import DatabaseError
+from affcli.store import open_store, run_sql
+from tests.factories import learning_spec
+from tests.store.records import NOW, VERSIONS, learned, learning_steps
+
+
+def ready() -> None:
+    """Tell the test that it may go on."""
+    sys.stdout.write("ready\n")
+    sys.stdout.flush()
+
+
+def first_run(path: Path) -> None:
+    """Open a new database, at the same moment as others who wait for a line on stdin too."""
+    ready()
+    sys.stdin.readline()
+    with open_store(path, create=True, write=True) as store:
+        store.begin_learning(learning_spec(), VERSIONS, NOW)
+
+
+def hold_write_lock(path: Path) -> None:
+    """Hold the lock until killed."""
+    driver = sqlite3.connect(path, isolation_level=None)
+    driver.execute("BEGIN IMMEDIATE")
+    ready()
+    signal.pause()
+
+
+def hold_read_lock(path: Path) -> None:
+    """Read until a line comes on stdin."""
+    driver = sqlite3.connect(path, isolation_level=None)
+    driver.execute("BEGIN")
+    driver.execute("SELECT count(*) FROM learning_run").fetchone()
+    ready()
+    sys.stdin.readline()
+    driver.execute("COMMIT")
+
+
+def wait_for_lock(path: Path) -> None:
+    """Wait for a lock that nobody gives back, until ctrl-C."""
+    with open_store(path, create=False, write=True) as store:
+        ready()
+        learned(store)
+
+
+def append_in_chunks(path: Path) -> None:
+    """Compute one long run in small chunks, going on from what is stored when another was faster."""
+    spec = learning_spec(behaviors=120)
+    with open_store(path, create=False, write=True) as store:
+        ready()
+        sys.stdin.readline()
+        info = store.begin_learning(spec, VERSIONS, NOW)
+        while info.status != "done":
+            at = info.behaviors
+            steps = learning_steps(4, first=at + 1)
+            checkpoint = {"step": at + 4}
+            done = at + 4 == 120
+            store.append_learning(info.id, at, steps, checkpoint, at, done=done, now=NOW)
+            info = store.begin_learning(spec, VERSIONS, NOW)
+
+
+def die_while_writing(path: Path) -> None:
+    """Leave a hot journal: pages already in the file, no commit, killed."""
+    with open_store(path, create=False, write=True) as store, store.writing() as connection:
+        connection.exec_driver_sql("PRAGMA cache_spill = 1")
+        connection.exec_driver_sql("PRAGMA cache_size = 1")
+        connection.exec_driver_sql(
+            "UPDATE learning_run SET settings = hex(randomblob(20000)), status = 'torn'"
+        )
+        connection.exec_driver_sql("UPDATE affordance SET binding_params = hex(randomblob(3000))")
+        assert Path(f"{path}-journal").stat().st_size > 0
+        os.kill(os.getpid(), signal.SIGKILL)
+
+
+def without_permission(path: Path) -> None:
+    """Read and write as somebody who may not write, and say what happened."""
+    with open_store(path, create=False, write=False):
+        run_sql(path, "select 1")  # what is imported late is imported now, as root
+    if os.getuid() == 0:
+        os.setgid(65534)
+        os.setuid(65534)
+    with open_store(path, create=False, write=False) as store:
+        runs = len(store.learning_runs())
+    (count,) = run_sql(path, "select count(*) from learning_run").rows[0]
+    sys.stdout.write(f"read {runs} {count}\n")
+    for place, create in ((path, False), (path.with_name("new.db"), True)):
+        try:
+            with open_store(place, create=create, write=True) as store:
+                learned(store)
+        except DatabaseError as error:
+            sys.stdout.write(f"{error}\n")
+
+
+def killed_while_migrating(path: Path) -> None:
+    """Make the schema in one child after another, each killed at a later statement."""
+    import sqlalchemy as sa  # noqa: PLC0415
+
+    with open_store(path.with_name("warm.db"), create=True, write=True):
+        pass  # everything is imported now: a child is a fork, and cheap
+    for statement in range(1, 60):
+        child = os.fork()
+        if child == 0:
+            count = 0
+
+            def count_and_die(*_: object) -> None:
+                nonlocal count
+                count += 1
+                if count == statement:  # noqa: B023
+                    os.kill(os.getpid(), signal.SIGKILL)
+
+            sa.event.listen(sa.Engine, "before_cursor_execute", count_and_die)
+            with open_store(path, create=True, write=True):
+                os._exit(0)
+        _, status = os.waitpid(child, 0)
+        driver = sqlite3.connect(path)
+        tables = driver.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
+        sound = driver.execute("PRAGMA integrity_check").fetchone()[0]
+        driver.close()
+        sys.stdout.write(f"{statement} {status} {tables} {sound}\n")
+        if status == 0:
+            return
+        time.sleep(0)
+
+
+if __name__ == "__main__":
+    globals()[sys.argv[1]](Path(sys.argv[2]))

@@ -1,0 +1,31 @@
+"""A database of its own for every test, copied from one that was migrated once."""
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from affcli.store import Store, open_store
+
+
+@pytest.fixture(scope="session")
+def empty_database(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A database of this schema without records; nobody writes to it."""
+    path = tmp_path_factory.mktemp("store") / "empty.db"
+    with open_store(path, create=True, write=True):
+        pass
+    return path
+
+
+@pytest.fixture
+def database(empty_database: Path, tmp_path: Path) -> Path:
+    """A database without records, for this test alone."""
+    return shutil.copy(empty_database, tmp_path / "test.db")
+
+
+@pytest.fixture
+def store(database: Path) -> Iterator[Store]:
+    """`database`, open for writing."""
+    with open_store(database, create=False, write=True) as opened:
+        yield opened

@@ -1,0 +1,167 @@
+"""Hand-made records of learning and trials, without physics; and how they are put into a store."""
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+from affcli.core.affordance import Affordance
+from affcli.core.behavior import POSITION_WRIST, BehaviorCall, Execution, ExecutionStatus
+from affcli.core.change_detection import change_detected
+from affcli.core.geometry import Point, Pose
+from affcli.core.observation import movement
+from affcli.core.trial import (
+    BabblingRecord,
+    Counters,
+    LearningSpec,
+    Outcome,
+    Protocol,
+    RobotRecord,
+    StepRecord,
+    Survivors,
+    TrialEnd,
+    TrialRecord,
+    TrialSpec,
+    TrialStep,
+    Truth,
+)
+from affcli.store import LearningRunInfo, LearningStep, Store
+from tests.factories import BINDING, EXTEND_5, learning_spec, observation
+
+NOW = "2026-01-02T03:04:05+00:00"
+VERSIONS = {"affcli": "0", "python": "3"}
+SETTINGS = learning_spec().settings
+
+
+def learning_step(
+    step: int = 1,
+    *,
+    moved: tuple[float, float] = (0.0, 0.0),
+    call: BehaviorCall = EXTEND_5,
+    resets: int = 0,
+    redraws: int = 0,
+) -> LearningStep:
+    """Return one babbled behavior; it makes a row when the attractor moves far enough.
+
+    Every number in it depends on `step`, so that no two columns can be mistaken for each other.
+    """
+    at = Point(1.0 + step / 8, 24.0 - step / 16)
+    wrist = Point(at.x - 0.5, at.y - 14.0)
+    end_at, end_wrist = Point(at.x + moved[0], at.y + moved[1]), Point(wrist.x, wrist.y + 5.0)
+    start, end = observation(at, wrist=wrist), observation(end_at, wrist=end_wrist)
+    aim = BehaviorCall.of(POSITION_WRIST, {"x": 0.5 + step, "y": 14.0})
+    row = Affordance(step, BINDING, call, start, end) if change_detected(start, end) else None
+    done = ExecutionStatus.DONE
+    record = BabblingRecord(
+        step=step,
+        clock=5.25 * step,
+        resets=resets,
+        redraws=redraws,
+        placing=Execution(aim, done, Point(0.0, 17.0), wrist, 2.5),
+        execution=Execution(call, done, wrist, end_wrist, 1.75),
+        start=start,
+        end=end,
+        affordance=row,
+    )
+    truth = Truth(Pose(at.x + 0.03, at.y, 0.1), Pose(end_at.x, end_at.y - 0.03, 0.2))
+    return record, truth
+
+
+def learning_steps(count: int, *, first: int = 1) -> list[LearningStep]:
+    """Return babbled behaviors of which every third makes a row."""
+    return [
+        learning_step(step, moved=(0.0, 4.0) if step % 3 == 0 else (0.0, 0.0), resets=step % 2)
+        for step in range(first, first + count)
+    ]
+
+
+def learned(store: Store, count: int = 9, *, spec: LearningSpec | None = None) -> LearningRunInfo:
+    """Put a finished run into the store and return what it says of it."""
+    spec = spec or learning_spec(behaviors=count)
+    run = store.begin_learning(spec, VERSIONS, NOW)
+    steps = learning_steps(count)
+    assert store.append_learning(run.id, 0, steps, None, 5.25 * count, done=True, now=NOW)
+    return store.begin_learning(spec, VERSIONS, NOW)
+
+
+def trial_spec(
+    goal: int = 2,
+    start: int = 1,
+    *,
+    tool: str = "t-hook",
+    shape: str | None = None,
+    protocol: Protocol = Protocol.EXTENSION_OF_REACH,
+    counters: Counters = Counters.AS_LEARNED,
+    robot: int = 0,
+) -> TrialSpec:
+    """Return a trial of the whole tool unless another `shape` is given."""
+    return TrialSpec(protocol, tool, shape or tool, goal, start, 0, robot, counters)
+
+
+def trial_step(
+    row: Affordance,
+    number: int = 1,
+    *,
+    seen: tuple[float, float] = (0.0, 4.0),
+    blocked: bool = False,
+    lost: bool | None = None,
+) -> TrialStep:
+    """Return a step that tried `row` and replicated it if the attractor moved the expected way."""
+    at, wrist = Point(3.0, 25.0), Point(2.5, 11.0)
+    start = observation(at, wrist=wrist)
+    end = start if blocked else observation(Point(at.x + seen[0], at.y + seen[1]), wrist=wrist)
+    happened, expected = movement(start, end), row.expected_movement
+    status = ExecutionStatus.BLOCKED if blocked else ExecutionStatus.DONE
+    aim = BehaviorCall.of(POSITION_WRIST, {"x": 0.5, "y": 14.0})
+    execution = Execution(row.exploratory, ExecutionStatus.DONE, wrist, Point(2.5, 16.0), 1.5)
+    record = StepRecord(
+        number=number,
+        clock=6.5 * number,
+        survivors=Survivors(9, 8, 7, 2),
+        row=row,
+        placing=Execution(aim, status, Point(0.0, 17.0), wrist, 2.0),
+        execution=None if blocked else execution,
+        start=start,
+        end=end,
+        expected=expected,
+        seen=happened,
+        replicated=happened.distance > 0.5 and math.copysign(1, happened.dy * expected.dy) > 0,
+    )
+    return TrialStep(record, Truth(Pose(3.0, 25.1), Pose(3.1, 29.2)), lost)
+
+
+def counted(row: Affordance, step: StepRecord) -> Affordance:
+    """Return `row` with the counters it has after `step`."""
+    used, successful = step.times_used_after, step.times_successful_after
+    return replace(row, times_used=used, times_successful=successful)
+
+
+def trial_record(
+    spec: TrialSpec, rows: Sequence[Affordance], outcome: Outcome = Outcome.SOLVED
+) -> TrialRecord:
+    """Return a whole trial that tried these rows one after the other, each as learned."""
+    steps = tuple(trial_step(row, number) for number, row in enumerate(rows, 1))
+    return TrialRecord(spec, steps, TrialEnd(outcome, len(steps), 6.5 * len(steps)))
+
+
+def robot_record(robot: int, *, behaviors: int = 6, seed: int = 0) -> RobotRecord:
+    """Return the life of a robot with two tools, two trials each, and one with a broken tool."""
+    steps = tuple(learning_steps(behaviors))
+    rows = [record.affordance for record, _ in steps if record.affordance is not None]
+    runs, trials = [], []
+    for tool in ("stick", "t-hook"):
+        spec = learning_spec(tool, seed=seed, robot=robot, behaviors=behaviors)
+        runs.append((spec, steps, 31.5))
+        for start, outcome in ((1, Outcome.SOLVED), (2, Outcome.NO_ROW)):
+            trial = trial_spec(1, start, tool=tool, robot=robot)
+            trials.append(trial_record(trial, rows[:start], outcome))
+    broken = trial_spec(1, 1, shape="l-hook", protocol=Protocol.TOOL_ADAPTATION, robot=robot)
+    failed = trial_step(rows[0], 1, seen=(0.0, 0.0), lost=True)
+    again = trial_step(rows[1], 2, lost=False)
+    trials.append(TrialRecord(broken, (failed, again), TrialEnd(Outcome.SOLVED, 2, 13.0)))
+    return RobotRecord(robot, tuple(runs), tuple(trials))
+
+
+def all_steps(trials: Sequence[TrialRecord]) -> list[TrialStep]:
+    """Return the steps of several trials in one list."""
+    return list(itertools.chain.from_iterable(trial.steps for trial in trials))
