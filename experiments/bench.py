@@ -167,9 +167,7 @@ def observations(numbers: list[float]) -> tuple[Observation, Observation]:
     colors = (240.0, 120.0, 20.0, 40.0, 160.0, 70.0)
     dx, dy = 16 * numbers[2] - 8, 8 + 10 * numbers[3]
     start = Observation(x, y, 0.0, dx, dy, 0.0, *colors)
-    end = start._replace(
-        object_x=x + 10 * numbers[4] - 5.0, object_y=y + 10 * numbers[5] - 5.0
-    )
+    end = start._replace(object_x=x + 10 * numbers[4] - 5.0, object_y=y + 10 * numbers[5] - 5.0)
     return start, end
 
 

@@ -1,8 +1,8 @@
 """Run the migrations inside the transaction of the connection that affcli.store hands in.
 
-``affcli.store`` opens the transaction (BEGIN IMMEDIATE) and commits it, so that a kill leaves the old
-or the new schema and nothing between. Alembic on its own would not: by default the driver ends the
-transaction before DDL.
+``affcli.store`` opens the transaction (BEGIN IMMEDIATE) and commits it, so that a kill leaves the
+old or the new schema and nothing between. Alembic on its own would not: its statements would be
+committed one by one.
 """
 
 from alembic import context

@@ -47,12 +47,11 @@ def break_tool(
 
     with open_store(database, create=False, write=True) as store:
         (run,) = learned_runs(store, tool, database)
-        with progress() as shown:
-            task = shown.add_task(f"{tool} becomes {becomes}", total=32, status="")
+        with progress(f"{tool} becomes {becomes}", 32) as bar:
             trials = []
             for trial in break_trials(store, run, becomes, seed, now):
                 trials.append(trial)
-                shown.update(task, advance=1, status=f"{len(trials)} of 32 trials")
+                bar.update(len(trials), f"{len(trials)} of 32 trials")
     side = missing_side(settings_from_json(run.spec.settings), tool, becomes)
     if as_json:
         show_json(broken_json(becomes, side, trials))

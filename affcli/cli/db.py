@@ -6,8 +6,22 @@ import typer
 
 from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database
 from affcli.cli.terminal import say, show, show_json
+from affcli.errors import UsageError, one_line
 
-app = typer.Typer(help="The database file itself.", no_args_is_help=True, rich_markup_mode=None)
+app = typer.Typer(help="The database file itself.", rich_markup_mode=None)
+
+
+@app.callback(invoke_without_command=True)
+def root(context: typer.Context) -> None:
+    """The database file itself."""
+    help_without_command(context)
+
+
+def help_without_command(context: typer.Context) -> None:
+    """Say which commands there are, on stderr, when none was given; that is a usage error (2)."""
+    if context.invoked_subcommand is None:
+        say(context.get_help())
+        raise typer.Exit(UsageError.exit_code)
 
 
 @app.command("upgrade")
@@ -29,10 +43,10 @@ def info(*, database: Database = DEFAULT_DATABASE, as_json: AsJson = False) -> N
     if as_json:
         show_json(facts)
         return
-    from rich.table import Table
+    from affcli.report.sheet import Sheet
 
-    table = Table(show_header=False)
     counts: dict[str, int] = facts.pop("counts")
-    for name, value in {**facts, **counts}.items():
-        table.add_row(name, str(value))
+    names = (*(name.replace("_", " ") for name in facts), *counts)
+    table = Sheet(names, records=True)
+    table.add(*(one_line(value) for value in (*facts.values(), *counts.values())))
     show(table)

@@ -48,6 +48,8 @@ def learn(
 
     The same command again says that the run is done; after an interruption it goes on.
     """
+    if all_tools and tool:
+        raise UsageError("give --tool or --all-tools, not both")
     names = list(TOOL_PARTS) if all_tools else checked_tools(tool or ())
     if not names:
         raise UsageError(f"which tool? give --tool {'|'.join(TOOL_PARTS)}, or --all-tools")
@@ -77,33 +79,29 @@ def learn(
             ]
         )
         return
-    for learned, group in zip(results, groups, strict=True):
-        show(groups_table(learned.info.spec.tool, group))
+    show(
+        *(
+            groups_table(learned.info.spec.tool, group)
+            for learned, group in zip(results, groups, strict=True)
+        )
+    )
 
 
 def _learn(store: "Store", spec: "LearningSpec") -> "Learned":
     """Run one learning run with progress on stderr; say what it gave."""
     from affcli.lab.learning import learn as learn_run
-    from affcli.report.learning import clock
+    from affcli.report.learning import summary
 
     goal = 3600.0 * spec.hours if spec.hours is not None else float(spec.behaviors or 0)
-    with progress() as shown:
-        task = shown.add_task(f"learning {spec.tool}", total=goal, status="")
+    with progress(spec.tool, goal) as bar:
 
         def update(info: "LearningRunInfo") -> None:
             """Show the robot clock, behaviors, rows and resets."""
             done = info.robot_seconds if spec.hours is not None else info.behaviors
-            status = (
-                f"{clock(info.robot_seconds)}, {info.behaviors} behaviors, {info.rows} rows, "
-                f"{info.resets} resets"
-            )
-            shown.update(task, completed=min(done, goal), status=status)
+            bar.update(min(done, goal), summary(info))
 
         learned = learn_run(store, spec, now, update)
     info = learned.info
     verb = "learned" if learned.new else "already learned, nothing to do:"
-    say(
-        f"{verb} {spec.tool} (run {info.id}, seed {spec.seed}): {clock(info.robot_seconds)} of "
-        f"robot time, {info.behaviors} behaviors, {info.rows} rows, {info.resets} resets"
-    )
+    say(f"{verb} {spec.tool} (run {info.id}, seed {spec.seed}): {summary(info)}")
     return learned

@@ -1,50 +1,14 @@
-"""The ``affcli`` program: its commands, and how errors leave it."""
+"""One run of the ``affcli`` program: how errors, signals and the exit code leave it."""
 
-import os
 import signal
 import sys
 from types import FrameType
 
-import typer
-
-from affcli import __version__
-from affcli.cli import (
-    break_tool,
-    db,
-    learn,
-    report,
-    reproduce,
-    solve,
-    sql,
-)
+from affcli.cli.terminal import prepare_streams, say
 from affcli.errors import AffcliError, one_line
 
-app = typer.Typer(
-    name="affcli",
-    help="A robot learns what tools are good for by playing with them (after Stoytchev, 2008).",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
-    add_completion=False,
-)
-app.command("learn")(learn.learn)
-app.command("solve")(solve.solve)
-app.command("break-tool")(break_tool.break_tool)
-app.command("report")(report.report)
-app.command("reproduce")(reproduce.reproduce)
-app.command("sql")(sql.sql)
-app.add_typer(db.app, name="db")
-
-
-@app.callback(invoke_without_command=True)
-def root(
-    *,
-    version: bool = typer.Option(False, "--version", help="Print the version and leave."),
-) -> None:
-    """A robot learns what tools are good for by playing with them (after Stoytchev, 2008)."""
-    if version:
-        sys.stdout.write(f"affcli {__version__}\n")
-        raise typer.Exit
+GO_ON = ("learn", "reproduce")
+"""The commands that, given again, go on from what is saved."""
 
 
 class Stopped(BaseException):
@@ -61,34 +25,49 @@ def main() -> int:
     0 ok, 1 the task was not solved, 2 usage, 3 database, 4 bad input, 130/143 interrupted. Only
     what a user can cause becomes one line on stderr; a bug keeps its traceback.
     """
-    for signum in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(signum, _stop)
+    prepare_streams()
     try:
-        code = app(standalone_mode=False)
-        sys.stdout.flush()
-    except typer.TyperException as error:
-        return _fail(error.format_message(), error.exit_code)
+        for signum in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(signum, _stop)
+        return _run()
     except AffcliError as error:
         return _fail(str(error), error.exit_code)
     except Stopped as stopped:
-        return _fail(
-            "stopped; what was saved is kept, and the same command goes on from there",
-            stopped.exit_code,
-        )
-    except BrokenPipeError:
-        # Whoever read our output has gone (`| head`): nothing is left to say, and nothing failed.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
+        goes_on = ", and the same command goes on from there" if _command() in GO_ON else ""
+        return _fail(f"stopped; what was saved is kept{goes_on}", stopped.exit_code)
+
+
+def _run() -> int:
+    """Run the command that was given."""
+    # Imported only now: a ctrl-C meanwhile is one line like any other.
+    import typer
+
+    from affcli.cli.app import app
+
+    try:
+        code = app(standalone_mode=False)
+    except typer.TyperException as error:
+        return _fail(error.format_message(), error.exit_code)
     return code if isinstance(code, int) else 0
 
 
 def _fail(message: str, code: int) -> int:
     """Write one line to stderr and return the exit code."""
-    sys.stderr.write(f"affcli: {one_line(message.strip(), 1000)}\n")
+    say(f"affcli: {one_line(message.strip(), 1000)}")
     return code
 
 
+def _command() -> str:
+    """Return the command that was given, empty if none."""
+    return next(iter(sys.argv[1:]), "")
+
+
 def _stop(signum: int, frame: FrameType | None) -> None:
-    """Leave by an exception, so that open transactions are rolled back on the way out."""
+    """Leave by an exception, so that open transactions are rolled back on the way out.
+
+    A second signal ends the process at once; SQLite then rolls back when the file is next opened.
+    """
     del frame
+    for either in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(either, signal.SIG_DFL)
     raise Stopped(signum)

@@ -45,27 +45,22 @@ def reproduce(
     from affcli.config import load_settings
     from affcli.lab.overview import reproduction_of
     from affcli.lab.reproduction import reproduce as run_reproduction
-    from affcli.report.reproduction import (
-        failures_table,
-        reproduction_json,
-        reproduction_table,
-    )
+    from affcli.report.reproduction import reproduction_json, reproduction_tables
     from affcli.store import open_store
 
     settings = load_settings(config)
     with open_store(database, create=True, write=True) as store:
         events = run_reproduction(store, settings, robots, seed, workers, now)
         session = next(events)
-        with progress() as shown:
-            task = shown.add_task("reproducing", total=robots, status="")
+        with progress("reproducing", robots) as bar:
             for saved in events:
-                shown.update(task, completed=saved, status=f"{saved} of {robots} robots")
+                bar.update(saved, f"{saved} of {robots} robots")
         result = reproduction_of(store, session, robots)
     say(f"session {session}: {robots} robots, seed {seed}, saved in {database}")
     if as_json:
         show_json(reproduction_json(result))
     else:
-        show(reproduction_table(result), failures_table(result.failures, result.trials))
+        show(*reproduction_tables(result))
 
 
 def _has_affinity() -> bool:

@@ -54,7 +54,7 @@ def solve(
 
     from affcli.lab.solving import SolvedStep
     from affcli.lab.solving import solve as solve_trials
-    from affcli.report.trials import explain_step, solve_table, trial_line
+    from affcli.report.trials import explain_trial, solve_table
     from affcli.store import open_store
 
     trials: list[SolvedTrial] = []
@@ -68,7 +68,7 @@ def solve(
             trials.append(event)
             steps.append([])
             if explain and not as_json:
-                show(trial_line(event.trial, event.end), *map(explain_step, steps[-2]))
+                show(explain_trial(event.trial, event.end, steps[-2]))
     if as_json:
         show_json([_as_json(*pair, explain) for pair in zip(trials, steps[:-1], strict=True)])
     else:
@@ -105,6 +105,8 @@ def _as_json(trial: "SolvedTrial", steps: list["StepRecord"], explain: bool) -> 
         "robot_seconds": end.clock,
     }
     if explain:
+        left = end.last_survivors
+        value["rows_left_at_end"] = None if left is None else left._asdict()
         value["explain"] = [
             {
                 "step": record.number,

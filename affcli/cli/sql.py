@@ -1,5 +1,7 @@
 """``affcli sql``: ask the database in plain SQL, read-only for certain."""
 
+from collections.abc import Sequence
+from itertools import chain, count
 from typing import Annotated, Any
 
 import typer
@@ -25,18 +27,34 @@ def sql(
     result = run_sql(database, query)
     columns, rows = result.columns, result.rows
     if as_json:
-        show_json([dict(zip(columns, map(_plain, row), strict=True)) for row in rows])
+        keys = _distinct(columns)
+        show_json([dict(zip(keys, map(_plain, row), strict=True)) for row in rows])
     else:
-        from rich.table import Table
+        from affcli.report.sheet import Sheet
 
-        table = Table()
-        for column in columns:
-            table.add_column(one_line(column), overflow="fold")
+        names = tuple(map(one_line, _distinct(columns)))
+        numbers = {
+            name
+            for name, values in zip(names, zip(*rows, strict=True), strict=False)
+            if all(value is None or isinstance(value, int | float) for value in values)
+        }
+        table = Sheet(names, left=tuple(n for n in names if n not in numbers), wraps=False)
         for row in rows:
-            table.add_row(*("" if value is None else one_line(_plain(value)) for value in row))
+            table.add(*("" if value is None else one_line(_plain(value)) for value in row))
         show(table)
+    if not rows:
+        say("no rows")
     if result.truncated:
         say(f"only the first {len(rows)} rows are shown; add a limit or a where")
+
+
+def _distinct(columns: Sequence[str]) -> list[str]:
+    """Return the names of columns, a repeated one with its number: a, a 2, a 3."""
+    names: list[str] = []
+    for column in columns:
+        numbered = (f"{column} {number}" for number in count(2))
+        names.append(next(name for name in chain([column], numbered) if name not in names))
+    return names
 
 
 def _plain(value: Any) -> Any:

@@ -1,17 +1,40 @@
 """Where the commands' words go: results to stdout, messages and progress to stderr."""
 
+import io
 import json
 import math
+import os
 import sys
 from contextlib import contextmanager
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TextIO
+
+from affcli.errors import AffcliError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rich.console import Console, RenderableType
-    from rich.progress import Progress
+    from rich.progress import Progress, TaskID
+
+
+NARROWEST = 20
+"""A terminal of fewer columns is written to as if it had these."""
+
+
+def prepare_streams() -> None:
+    """Make sure that whatever the commands say can be written somewhere.
+
+    A closed stream (``>&-``) becomes one that forgets; what an encoding lacks is shown escaped.
+    """
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            forgetful = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 open to the end
+            setattr(sys, name, forgetful)
+        elif isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def now() -> str:
@@ -21,44 +44,107 @@ def now() -> str:
 
 def say(message: str) -> None:
     """Write a message to stderr."""
-    sys.stderr.write(f"{message}\n")
+    _write(sys.stderr, f"{message}\n")
 
 
 def show(*renderables: "RenderableType") -> None:
-    """Write tables and text to stdout."""
-    console = _console(stderr=False)
-    for renderable in renderables:
+    """Write tables and text to stdout, with an empty line between two."""
+    page = _Page(sys.stdout)
+    console = _console(page)
+    for number, renderable in enumerate(renderables):
+        if number:
+            console.print()
         console.print(renderable)
+    _write(sys.stdout, page.getvalue())
+
+
+def show_text(text: str) -> None:
+    """Write text to stdout as it is."""
+    _write(sys.stdout, text)
 
 
 def show_json(value: Any) -> None:
     """Write JSON to stdout; a number that is not finite becomes null."""
-    sys.stdout.write(json.dumps(_finite(value), indent=2) + "\n")
+    show_text(json.dumps(_finite(value), indent=2) + "\n")
+
+
+class Bar:
+    """How far some work has come; shows nothing, as without a terminal."""
+
+    def update(self, done: float, status: str) -> None:
+        """Say how much is done, and in words."""
+
+
+class _VisibleBar(Bar):
+    """A bar on the terminal."""
+
+    def __init__(self, shown: "Progress", task: "TaskID") -> None:
+        self._shown, self._task = shown, task
+
+    def update(self, done: float, status: str) -> None:
+        self._shown.update(self._task, completed=done, status=status)
 
 
 @contextmanager
-def progress() -> "Iterator[Progress]":
-    """Give a progress display on stderr that leaves nothing behind; silent without a terminal."""
+def progress(description: str, total: float) -> "Iterator[Bar]":
+    """Give a bar on stderr that leaves nothing behind; silent without a terminal."""
+    if not sys.stderr.isatty():
+        yield Bar()
+        return
     from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-    console = _console(stderr=True)
     columns = (
         TextColumn("{task.description}"),
-        BarColumn(),
+        BarColumn(bar_width=10),
         TextColumn("{task.fields[status]}"),
         TimeRemainingColumn(),
     )
-    with Progress(
-        *columns, console=console, transient=True, disable=not console.is_terminal
-    ) as shown:
-        yield shown
+    with Progress(*columns, console=_console(sys.stderr), transient=True) as shown:
+        yield _VisibleBar(shown, shown.add_task(description, total=total, status=""))
 
 
-def _console(*, stderr: bool) -> "Console":
+class _Page(io.StringIO):
+    """What will be written to a stream, drawn for that stream."""
+
+    def __init__(self, stream: TextIO) -> None:
+        super().__init__()
+        self._stream = stream
+
+    @property
+    def encoding(self) -> str:  # type: ignore[override]
+        return self._stream.encoding
+
+    def isatty(self) -> bool:
+        return self._stream.isatty()
+
+
+def _console(file: TextIO) -> "Console":
     """Return a rich console; markup and highlighting are off, for names are users' own."""
     from rich.console import Console
 
-    return Console(stderr=stderr, markup=False, highlight=False, emoji=False)
+    console = Console(file=file, markup=False, highlight=False, emoji=False)
+    console.width = max(console.width, NARROWEST)
+    return console
+
+
+def _write(stream: TextIO, text: str) -> None:
+    """Write and flush.
+
+    A reader who has gone (``| head``) is no failure: the command goes on, its words are forgotten.
+
+    Raises:
+        AffcliError: the stream cannot be written, a full disk for one.
+    """
+    try:
+        stream.write(text)
+        stream.flush()
+    except OSError as error:
+        # Or Python would try to write the rest once more on its way out, and complain.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+        if not isinstance(error, BrokenPipeError):
+            raise AffcliError(
+                f"the output cannot be written: {error.strerror}; write it elsewhere"
+            ) from error
 
 
 def _finite(value: Any) -> Any:

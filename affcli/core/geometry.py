@@ -40,9 +40,11 @@ class ConvexPolygon:
     Attributes:
         edges: the edges as (start, end), in order.
         bounds: left, bottom, right and top of the bounding box (in).
+        is_box: it fills its bounding box.
     """
 
     vertices: tuple[Point, ...]
+    is_box: bool = field(init=False, repr=False, compare=False)
     edges: tuple[tuple[Point, Point], ...] = field(init=False, repr=False, compare=False)
     bounds: tuple[float, float, float, float] = field(init=False, repr=False, compare=False)
 
@@ -50,7 +52,10 @@ class ConvexPolygon:
         following = self.vertices[1:] + self.vertices[:1]
         object.__setattr__(self, "edges", tuple(zip(self.vertices, following, strict=True)))
         xs, ys = zip(*self.vertices, strict=True)
-        object.__setattr__(self, "bounds", (min(xs), min(ys), max(xs), max(ys)))
+        bounds = (min(xs), min(ys), max(xs), max(ys))
+        object.__setattr__(self, "bounds", bounds)
+        corners = {(x, y) for x in bounds[::2] for y in bounds[1::2]}
+        object.__setattr__(self, "is_box", set(self.vertices) == corners)
 
     @classmethod
     def box(cls, left: float, bottom: float, right: float, top: float) -> "ConvexPolygon":
@@ -62,6 +67,13 @@ class ConvexPolygon:
     def area(self) -> float:
         """Signed area by the shoelace formula (in^2); positive when counter-clockwise."""
         return 0.5 * sum(a.x * b.y - b.x * a.y for a, b in self.edges)
+
+    def box_distance(self, point: Point) -> float:
+        """Return the distance from `point` to the bounding box (in); never more than `distance`."""
+        left, bottom, right, top = self.bounds
+        dx = max(left - point.x, 0.0, point.x - right)
+        dy = max(bottom - point.y, 0.0, point.y - top)
+        return math.hypot(dx, dy)
 
     def moved(self, dx: float, dy: float) -> "ConvexPolygon":
         """Return this polygon translated by (dx, dy) (in)."""

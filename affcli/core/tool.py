@@ -4,7 +4,7 @@ Tool frame: origin at the grasp point, y along the handle away from the robot, x
 tool keeps its orientation in the table frame: a tool at wrist (x, y) is its parts moved by (x, y).
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import NewType
 
 from affcli.core.geometry import ConvexPolygon, Point
@@ -32,17 +32,19 @@ class Tool:
     """A rigid tool of one colour.
 
     The robot knows it by its colour alone (§7.2); the parts are for the physics and the pictures.
+
+    Attributes:
+        outlines: the convex parts in the tool frame (in).
     """
 
     name: ToolName
     color: Color
     parts: tuple[ToolPart, ...]
     grasp_point: Point = Point(0.0, 0.0)
+    outlines: tuple[ConvexPolygon, ...] = field(init=False, repr=False, compare=False)
 
-    @property
-    def outlines(self) -> tuple[ConvexPolygon, ...]:
-        """The convex parts in the tool frame (in)."""
-        return tuple(part.outline for part in self.parts)
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "outlines", tuple(part.outline for part in self.parts))
 
     def painted(self, color: Color) -> "Tool":
         """Return this shape in another colour: how §7.2 simulates a tool that broke."""

@@ -39,20 +39,17 @@ class NoisySensor:
         self._look = look
         self._settings = settings
         self._rng = rng
+        self._spread = np.array([settings.position_noise] * 4 + [settings.color_noise] * 6)
 
     def observe(self) -> Observation:
         """Return the observation vector of this moment."""
         scene = self._look()
-        noise = self._rng.standard_normal(10).tolist()
-        px, py, wx, wy = (self._settings.position_noise * n for n in noise[:4])
+        px, py, wx, wy, *tint = (self._rng.standard_normal(10) * self._spread).tolist()
         x, y = scene.attractor.x + px, scene.attractor.y + py
-        clean = (*scene.attractor_color, *scene.tool.color)
-        tints = (
-            min(255.0, max(0.0, component + self._settings.color_noise * n))
-            for component, n in zip(clean, noise[4:], strict=True)
-        )
         dx, dy = x - (scene.wrist.x + wx), y - (scene.wrist.y + wy)
-        return Observation(x, y, 0.0, dx, dy, 0.0, *tints)
+        clean = (*scene.attractor_color, *scene.tool.color)
+        colors = [min(255.0, max(0.0, c + n)) for c, n in zip(clean, tint, strict=True)]
+        return Observation(x, y, 0.0, dx, dy, 0.0, *colors)
 
     def observe_goal(self) -> GoalRegion:
         """Return the goal region with noise on its centre; its size is as painted.

@@ -21,10 +21,10 @@ class BabblingSettings:
     touch. Inches, in the wrist's frame.
     """
 
-    offset_x_max: float = 8.6
+    offset_x_max: float = 7.5
     """|x| of position wrist is at most this."""
-    offset_y_min: float = 4.0
-    offset_y_max: float = 21.5
+    offset_y_min: float = 6.8
+    offset_y_max: float = 19.2
     draws: int = 256
     """After this many wrist positions in vain the attractor is put back, as if out of reach."""
 

@@ -18,7 +18,7 @@ from affcli.planning.nested_query import choose_row
 class TrialLimits:
     """When a trial is given up."""
 
-    max_steps: int = 32
+    max_steps: int = 60
     """Steps after which the experimenter ends the trial; the paper names no limit."""
 
 

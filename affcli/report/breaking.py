@@ -4,11 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from rich.table import Table
-
 from affcli.core.affordance import Affordance
 from affcli.core.trial import Outcome, TrialRecord
 from affcli.report.paper import BROKEN_TOOL
+from affcli.report.sheet import Sheet
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +121,7 @@ def broken_json(shape: str, missing_side: float, trials: Sequence[TrialRecord]) 
 
 def broken_tables(
     shape: str, missing_side: float, trials: Sequence[TrialRecord]
-) -> tuple[Table, Table]:
+) -> tuple[Sheet, Sheet]:
     """Return the broken tool beside the whole one, and the rows that were excluded.
 
     Args:
@@ -131,15 +130,16 @@ def broken_tables(
         trials: the 16 with the broken tool and the 16 with the whole one.
     """
     broken, whole = broken_and_whole(shape, trials)
-    comparison = Table(title="The broken tool beside the whole one", title_justify="left")
-    comparison.add_column("16 trials each")
-    comparison.add_column(f"broken: {shape}", justify="right")
-    comparison.add_column("whole", justify="right")
+    comparison = Sheet(
+        ("16 trials each", f"broken: {shape}", "whole"),
+        title="The broken tool beside the whole one",
+        left=("16 trials each",),
+    )
     for label, left, right in zip(
         _LABELS, _figures(Tally.of(broken)), _figures(Tally.of(whole)), strict=True
     ):
-        comparison.add_row(label, left, right)
-    comparison.add_row("solved in the paper", f"{BROKEN_TOOL} of 16", "16 of 16")
+        comparison.add(label, left, right)
+    comparison.add("solved in the paper", f"{BROKEN_TOOL} of 16", "16 of 16")
     return comparison, _excluded_table(dead_rows(broken, missing_side))
 
 
@@ -165,19 +165,17 @@ def _figures(tally: Tally) -> tuple[str, ...]:
     )
 
 
-def _excluded_table(dead: Sequence[DeadRow]) -> Table:
+def _excluded_table(dead: Sequence[DeadRow]) -> Sheet:
     """Return the rows that died, most trials first."""
     missing = sum(row.on_missing_side for row in dead)
-    table = Table(
+    table = Sheet(
+        ("row", "behavior", "side", "lost", "trials"),
         title=f"Rows excluded with the broken tool: {len(dead)}, {missing} on the missing side",
         caption="row: the learning step that made it; lost: the broken shape truly cannot do it",
-        title_justify="left",
-        caption_justify="left",
+        left=("behavior", "side", "lost"),
     )
-    for column in ("row", "behavior", "side", "lost", "trials"):
-        table.add_column(column, justify="left" if column == "behavior" else "right")
     for row in sorted(dead, key=lambda d: (-d.trials, d.row.step)):
-        table.add_row(
+        table.add(
             str(row.row.step),
             str(row.row.exploratory),
             "missing" if row.on_missing_side else "other",

@@ -3,11 +3,10 @@
 from collections.abc import Iterable, Sequence
 from typing import Any, Protocol
 
-from rich.table import Table
-
 from affcli.core.behavior import BehaviorCall
 from affcli.core.geometry import direction_degrees
 from affcli.core.trial import LearningSpec
+from affcli.report.sheet import Sheet
 
 
 class BehaviorGroup(Protocol):
@@ -70,23 +69,20 @@ class LearnedTool(Protocol):
         """Robot time so far (s)."""
 
 
-def groups_table(tool: str, groups: Iterable[BehaviorGroup]) -> Table:
+def groups_table(tool: str, groups: Iterable[BehaviorGroup]) -> Sheet:
     """Return the behavior-distance groups: tried, rows, mean movement and direction."""
-    table = Table(
+    table = Sheet(
+        ("behavior", "tried", "rows", "mean inches", "mean degrees"),
         title=f"What the {tool} affords, by behavior",
-        caption="direction: 0 right, 90 away from the robot, 180 left, 270 toward it",
-        title_justify="left",
-        caption_justify="left",
+        caption="mean movement of the rows; degrees: 0 right, 90 away from the robot, 180 left",
+        left=("behavior",),
     )
-    table.add_column("behavior")
-    for column in ("tried", "rows", "mean movement", "mean direction"):
-        table.add_column(column, justify="right")
     for group in groups:
-        table.add_row(
+        table.add(
             str(group.call),
             str(group.tried),
             str(group.rows),
-            "-" if group.mean_movement is None else f"{group.mean_movement:.1f} in",
+            "-" if group.mean_movement is None else f"{group.mean_movement:.1f}",
             _direction(group),
         )
     return table
@@ -96,17 +92,19 @@ def _direction(group: BehaviorGroup) -> str:
     """Return the direction of the mean movement in degrees, - without rows."""
     if group.mean_dx is None or group.mean_dy is None:
         return "-"
-    return f"{direction_degrees(group.mean_dx, group.mean_dy) % 360:.0f} deg"
+    return str(whole_degrees(direction_degrees(group.mean_dx, group.mean_dy)))
 
 
-def learned_table(tools: Sequence[LearnedTool]) -> Table:
+def learned_table(tools: Sequence[LearnedTool]) -> Sheet:
     """Return the learning runs: tool, seed, robot time, behaviors, rows, resets."""
-    table = Table(title="Tools learned", title_justify="left")
-    for column in ("run", "tool", "seed", "robot time", "behaviors", "rows", "resets"):
-        table.add_column(column, justify="left" if column == "tool" else "right")
+    table = Sheet(
+        ("run", "tool", "seed", "robot time", "behaviors", "rows", "resets"),
+        title="Tools learned",
+        left=("tool",),
+    )
     for run in tools:
         unfinished = "" if run.status == "done" else " (unfinished)"
-        table.add_row(
+        table.add(
             str(run.id),
             f"{run.spec.tool}{unfinished}",
             str(run.spec.seed),
@@ -123,6 +121,18 @@ def clock(seconds: float) -> str:
     minutes, rest = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     return f"{hours} h {minutes:02} min" if hours else f"{minutes} min {rest:02} s"
+
+
+def whole_degrees(direction: float) -> int:
+    """Return a direction as whole degrees from 0 to 359."""
+    return round(direction) % 360
+
+
+def summary(run: LearnedTool) -> str:
+    """Return in words what a learning run gave, robot time first."""
+    counts = ((run.behaviors, "behavior"), (run.rows, "row"), (run.resets, "reset"))
+    words = (f"{count} {noun}{'s' if count != 1 else ''}" for count, noun in counts)
+    return ", ".join([clock(run.robot_seconds), *words])
 
 
 def groups_json(groups: Iterable[BehaviorGroup]) -> list[dict[str, Any]]:

@@ -5,7 +5,6 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from rich.console import RenderableType
-from rich.table import Table
 from rich.text import Text
 
 from affcli.report.learning import (
@@ -21,8 +20,9 @@ from affcli.report.reproduction import (
     Reproduction,
     failures_table,
     reproduction_json,
-    reproduction_table,
+    reproduction_tables,
 )
+from affcli.report.sheet import Sheet
 from affcli.report.trials import counts_table
 
 
@@ -91,25 +91,22 @@ def overview_tables(overview: Overview) -> list[RenderableType]:
         shown.append(failures_table(overview.failures, overview.trials))
     if overview.reproduction is not None:
         again = overview.reproduction
-        shown.append(reproduction_table(again))
-        shown.append(failures_table(again.failures, again.trials))
+        shown += reproduction_tables(again)
     if not shown:
         shown.append(Text("nothing learned yet; first run: affcli learn --tool t-hook"))
     return shown
 
 
-def _breakings_table(breakings: Sequence[Breaking]) -> Table:
+def _breakings_table(breakings: Sequence[Breaking]) -> Sheet:
     """Return the broken-tool sessions beside the paper."""
-    table = Table(
+    table = Sheet(
+        ("tool", "became", "broken", "whole", "tries on lost", "rows excluded"),
         title="Tools that broke",
         caption=f"solved (mean steps of the solved); paper: {BROKEN_TOOL} of 16 both",
-        title_justify="left",
-        caption_justify="left",
+        left=("tool", "became"),
     )
-    for column in ("tool", "became", "broken", "whole", "tries on lost", "rows excluded"):
-        table.add_column(column, justify="left" if column in ("tool", "became") else "right")
     for breaking in breakings:
-        table.add_row(
+        table.add(
             breaking.tool,
             breaking.shape,
             _solved(breaking.broken),

@@ -4,10 +4,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from rich.table import Table
 from rich.text import Text
 
 from affcli.report.paper import BROKEN_TOOL, EXTENSION_OF_REACH, TOTAL
+from affcli.report.sheet import Sheet
 from affcli.report.statistics import Spread
 
 
@@ -75,48 +75,70 @@ def _against(counts: Sequence[int], paper: int) -> dict[str, Any]:
     }
 
 
-def reproduction_table(result: Reproduction) -> Table:
+def reproduction_tables(result: Reproduction) -> tuple[Sheet, Sheet, Sheet]:
+    """Return the paper's table with ours in its cells, the totals, and the failures."""
+    return (
+        _cells_table(result),
+        _totals_table(result),
+        failures_table(result.failures, result.trials),
+    )
+
+
+def _cells_table(result: Reproduction) -> Sheet:
     """Return the paper's table: in each cell its count, our mean and central 95 % of robots."""
     robots = f"{result.robots} robot{'s' if result.robots != 1 else ''}"
-    table = Table(
-        title=f"Extension of reach: paper | mean of {robots} [central 95 %]",
+    columns = ("tool", "goal 1", "goal 2", "goal 3", "goal 4")
+    table = Sheet(
+        columns,
+        title=f"Extension of reach: paper|mean of {robots} [central 95 %]",
         caption="successes of 4 starts; ! = the paper's count lies outside",
-        title_justify="left",
-        caption_justify="left",
+        left=columns,
     )
-    table.add_column("tool")
-    for goal in (1, 2, 3, 4):
-        table.add_column(f"goal {goal}", justify="right")
     for tool, counts in EXTENSION_OF_REACH.items():
-        cells = [_cell(result.cells[tool, g], p, 1) for g, p in enumerate(counts, start=1)]
-        table.add_row(tool, *cells)
-    table.add_section()
-    table.add_row("total of 80", _cell(result.totals, TOTAL, 1))
-    table.add_row("broken of 16", _cell(result.broken, BROKEN_TOOL, 1))
+        cells = [_cell(result.cells[tool, g], p) for g, p in enumerate(counts, start=1)]
+        table.add(tool, *cells)
     return table
 
 
-def _cell(counts: Sequence[int], paper: int, digits: int) -> Text:
-    """Return one cell: the paper's count, our mean, the central interval, ! when outside."""
+def _totals_table(result: Reproduction) -> Sheet:
+    """Return the total and the broken tool's successes beside the paper's."""
+    table = Sheet(
+        ("all trials", "paper", "mean", "95 % of the mean", "central 95 %"),
+        left=("all trials",),
+    )
+    for name, counts, paper in (
+        ("extension of reach, of 80", result.totals, TOTAL),
+        ("broken tool, of 16", result.broken, BROKEN_TOOL),
+    ):
+        spread = Spread.of(counts)
+        low, high = spread.mean_ci
+        robots = _marked(f"[{spread.low},{spread.high}]", inside=spread.holds(paper))
+        table.add(name, str(paper), f"{spread.mean:.1f}", f"{low:.1f} to {high:.1f}", robots)
+    return table
+
+
+def _cell(counts: Sequence[int], paper: int) -> Text:
+    """Return one cell: the paper's count, our mean, the central interval."""
     spread = Spread.of(counts)
-    inside = spread.holds(paper)
-    words = f"{paper} | {spread.mean:.{digits}f} [{spread.low},{spread.high}]"
-    return Text(words if inside else f"{words}!", style="" if inside else "bold red")
+    words = f"{paper}|{spread.mean:.1f} [{spread.low},{spread.high}]"
+    return _marked(words, inside=spread.holds(paper))
 
 
-def failures_table(failures: Mapping[str, int], trials: int) -> Table:
+def _marked(words: str, *, inside: bool) -> Text:
+    """Return the words of an interval, marked when the paper's count is not inside."""
+    return Text(words) if inside else Text(f"{words}!", style="bold red")
+
+
+def failures_table(failures: Mapping[str, int], trials: int) -> Sheet:
     """Return failures by kind, the commonest first.
 
     Args:
         failures: how often each kind of failure occurred.
         trials: how many trials there were, the solved ones included.
     """
-    table = Table(title="Failures by kind", title_justify="left")
-    table.add_column("kind")
-    table.add_column("trials", justify="right")
-    table.add_column("share of all", justify="right")
+    table = Sheet(("kind", "trials", "share of all"), title="Failures by kind", left=("kind",))
     for kind, count in sorted(failures.items(), key=lambda item: (-item[1], item[0])):
-        table.add_row(kind, str(count), f"{100 * count / trials:.1f} %")
+        table.add(kind, str(count), f"{100 * count / trials:.1f} %")
     if not failures:
-        table.add_row("none", "0", "0.0 %")
+        table.add("none", "0", "0.0 %")
     return table

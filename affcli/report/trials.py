@@ -2,100 +2,111 @@
 
 from collections.abc import Mapping, Sequence
 
-from rich.table import Table
+from rich.console import Group, RenderableType
+from rich.padding import Padding
 from rich.text import Text
 
 from affcli.core.geometry import direction_degrees
 from affcli.core.observation import Movement
-from affcli.core.trial import Outcome, StepRecord, TrialEnd, TrialSpec
+from affcli.core.trial import Outcome, StepRecord, Survivors, TrialEnd, TrialSpec
+from affcli.report.learning import whole_degrees
 from affcli.report.paper import EXTENSION_OF_REACH
+from affcli.report.sheet import Sheet
 
 
-def explain_step(record: StepRecord) -> Text:
-    """Return the lines that say why a row was chosen and what came of it."""
-    left = record.survivors
-    row = record.row
-    used, successful = row.times_used, row.times_successful
-    after = f"{record.times_successful_after}/{record.times_used_after}"
-    verdict = "replicated" if record.replicated else "not replicated"
-    if record.execution is None:
-        verdict = f"{record.placing.status}, counted as a failure"
-    elif record.died:
+def explain_trial(spec: TrialSpec, end: TrialEnd, steps: Sequence[StepRecord]) -> RenderableType:
+    """Return how a trial ended, and step by step why each row was chosen and what came of it."""
+    solved = end.outcome is Outcome.SOLVED
+    head = Text(f"{spec.tool}, goal {spec.goal}, start {spec.start}: ")
+    head.append(end.outcome.value, style="green" if solved else "red")
+    head.append(f" ({end.steps} step{'s' if end.steps != 1 else ''})")
+    lines: list[RenderableType] = [head]
+    for step in steps:
+        lines.append(
+            _indented(2, f"step {step.number}: row {step.row.step}, {step.row.exploratory}")
+        )
+        lines += [_indented(4, line) for line in _step_lines(step)]
+    if end.last_survivors is not None:
+        lines.append(_indented(2, f"rows left: {_survivors(end.last_survivors)}"))
+    return Group(*lines, "")
+
+
+def _indented(by: int, line: str) -> Padding:
+    """Return a line that stays indented where it is wrapped."""
+    return Padding(Text(line), (0, 0, 0, by), expand=False)
+
+
+def _step_lines(step: StepRecord) -> tuple[str, ...]:
+    """Return the rows left by each search, the movements, and the probability."""
+    row = step.row
+    verdict = "replicated" if step.replicated else "not replicated"
+    if step.execution is None:
+        verdict = f"{step.placing.status}, counted as a failure"
+    if step.died:
         verdict += ", row excluded from now on"
-    lines = [
-        f"  step {record.number}: row {row.step}, {row.exploratory}",
-        (
-            f"    rows left: colours {left.consistent}, probability > 1/2 {left.probable}, "
-            f"in reach {left.reachable}, top 20 % {left.nearest}, least re-positioning 1"
-        ),
-        f"    expected {_movement(record.expected)}, seen {_movement(record.seen)}: {verdict}",
-        f"    probability {successful}/{used} -> {after}",
-    ]
-    return Text("\n".join(lines))
+    before = f"{row.times_successful}/{row.times_used}"
+    after = f"{step.times_successful_after}/{step.times_used_after}"
+    return (
+        f"rows left: {_survivors(step.survivors)}, 1 chosen",
+        f"expected {_movement(step.expected)}, seen {_movement(step.seen)}: {verdict}",
+        f"probability {before} -> {after}",
+    )
+
+
+def _survivors(left: Survivors) -> str:
+    """Return how many rows each search left."""
+    return (
+        f"{left.consistent} by colour, {left.probable} probable, {left.reachable} in reach, "
+        f"{left.nearest} nearest"
+    )
 
 
 def _movement(movement: Movement) -> str:
     """Return a movement as length and direction."""
     if movement.distance == 0.0:
         return "none"
-    direction = direction_degrees(movement.dx, movement.dy) % 360
-    return f"{movement.distance:.1f} in at {direction:.0f} deg"
+    direction = whole_degrees(direction_degrees(movement.dx, movement.dy))
+    return f"{movement.distance:.1f} in at {direction} deg"
 
 
-def trial_line(spec: TrialSpec, end: TrialEnd) -> Text:
-    """Return one line that says how a trial ended."""
-    solved = end.outcome is Outcome.SOLVED
-    line = Text(f"{spec.tool}, goal {spec.goal}, start {spec.start}: ")
-    line.append(end.outcome.value, style="green" if solved else "red")
-    line.append(f" ({end.steps} step{'s' if end.steps != 1 else ''})")
-    return line
-
-
-def solve_table(goal: int, ends: Sequence[tuple[TrialSpec, TrialEnd]]) -> Table:
+def solve_table(goal: int, ends: Sequence[tuple[TrialSpec, TrialEnd]]) -> Sheet:
     """Return the trials of one goal: a row a tool, a column a start."""
     starts = sorted({spec.start for spec, _ in ends})
-    table = Table(
+    columns = [f"start {start}" for start in starts]
+    table = Sheet(
+        ("tool", *columns, "solved", "paper"),
         title=f"Goal {goal}: outcome (steps) by start",
         caption="counters of the rows used were updated in the stored table",
-        title_justify="left",
-        caption_justify="left",
+        left=("tool", *columns),
     )
-    table.add_column("tool")
-    for start in starts:
-        table.add_column(f"start {start}")
-    table.add_column("solved", justify="right")
-    table.add_column("paper", justify="right")
     for tool in dict.fromkeys(spec.tool for spec, _ in ends):
         mine = {spec.start: end for spec, end in ends if spec.tool == tool}
         solved = sum(end.outcome is Outcome.SOLVED for end in mine.values())
         paper = f"{EXTENSION_OF_REACH[tool][goal - 1]}/4" if tool in EXTENSION_OF_REACH else "-"
         cells = [f"{mine[s].outcome} ({mine[s].steps})" for s in starts]
-        table.add_row(tool, *cells, f"{solved}/{len(mine)}", paper)
+        table.add(tool, *cells, f"{solved}/{len(mine)}", paper)
     return table
 
 
-def counts_table(title: str, solved: Mapping[tuple[str, int], tuple[int, int]]) -> Table:
+def counts_table(title: str, solved: Mapping[tuple[str, int], tuple[int, int]]) -> Sheet:
     """Return successes of one robot by tool and goal beside the paper's.
 
     Args:
         title: of the table.
         solved: (solved, tried) by (tool, goal).
     """
-    table = Table(
+    table = Sheet(
+        ("tool", "goal 1", "goal 2", "goal 3", "goal 4"),
         title=title,
-        caption="solved/tried | paper's successes of 4",
-        title_justify="left",
-        caption_justify="left",
+        caption="solved/tried|the paper's successes of 4",
+        left=("tool",),
     )
-    table.add_column("tool")
-    for goal in (1, 2, 3, 4):
-        table.add_column(f"goal {goal}", justify="right")
     for tool in dict.fromkeys(tool for tool, _ in solved):
         paper = EXTENSION_OF_REACH.get(tool, (None,) * 4)
         cells = []
         for goal in (1, 2, 3, 4):
             good, tried = solved.get((tool, goal), (0, 0))
             beside = "-" if paper[goal - 1] is None else str(paper[goal - 1])
-            cells.append(f"{good}/{tried} | {beside}" if tried else f"- | {beside}")
-        table.add_row(tool, *cells)
+            cells.append(f"{good}/{tried}|{beside}" if tried else f"-|{beside}")
+        table.add(tool, *cells)
     return table

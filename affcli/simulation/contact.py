@@ -5,6 +5,9 @@ from collections.abc import Sequence
 
 from affcli.core.geometry import ConvexPolygon, Point
 
+TOUCHING = 1e-9
+"""A gap of no more than this (in) is rounding: the disc touches already."""
+
 
 def travel_to_contact(
     parts: Sequence[ConvexPolygon], direction: Point, length: float, center: Point, radius: float
@@ -49,7 +52,7 @@ def _part_travel(
     part: ConvexPolygon, direction: Point, center: Point, radius: float
 ) -> float | None:
     """Return when the outline of the part, grown by `radius`, first passes over `center` (in)."""
-    if part.distance(center) <= radius:
+    if part.distance(center) <= radius + TOUCHING:
         return 0.0
     found: list[float] = []
     for a, b in part.edges:

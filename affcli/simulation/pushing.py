@@ -9,6 +9,7 @@ from affcli.core.geometry import ConvexPolygon, Point, Pose
 from affcli.core.workspace import PuckGeometry, SurfaceFriction
 from affcli.errors import SimulationDivergedError
 from affcli.simulation.contact import travel_to_contact
+from affcli.simulation.pace import Pace
 from affcli.simulation.physics_settings import PhysicsSettings
 from affcli.simulation.surface_friction import surface_friction
 from affcli.simulation.wrist_motion import STEP, Stretch, distance_of, skip
@@ -19,6 +20,9 @@ SETTLE_STEPS = 512
 """Friction stops a puck pushed at 5 in/s within 0.04 s; after a second something is wrong."""
 CONTACT_MARGIN = 0.02
 """Start this far before contact (in): two steps at full speed."""
+
+FAR_AWAY = Pose(1e3, 1e3)
+"""Where no tool touches the puck (in)."""
 
 Moment = Callable[[float, Pose], None]
 """Called after each physics step with the tool's travel (in) and the puck's pose."""
@@ -49,6 +53,8 @@ class PushSimulator:
         self._space = pymunk.Space()
         self._space.iterations = settings.iterations
         self._space.collision_slop = settings.collision_slop
+        # The engine wants the share of an overlap that is left after a second.
+        self._space.collision_bias = (1.0 - settings.overlap_mended) ** round(1.0 / STEP)
         # 1 is the least that works: with 0 the engine drops a contact before it is solved. No
         # impulse outlives the step after a contact ends.
         self._space.collision_persistence = 1
@@ -86,7 +92,7 @@ class PushSimulator:
             direction: unit vector along which the tool moves.
             motion: the stretches of the motion, along `direction`.
             watch: called after each physics step; makes the push run whole.
-            whole: simulate every step from the first. Without it the steps before contact are
+            whole: simulate the motion from its first step. Without it the steps before contact are
                 skipped, and a push that never touches is not simulated; the result is the same.
 
         Raises:
@@ -101,13 +107,21 @@ class PushSimulator:
                 return puck
             gone, motion = skip(motion, max(0.0, travel - CONTACT_MARGIN))
         self._lay_out(puck, Point(wrist.x + gone * direction.x, wrist.y + gone * direction.y))
+        pace = Pace(self._outlines, self._radius)
         for speed, steps in motion:
             self._tool.velocity = (speed * direction.x, speed * direction.y)
-            for _ in range(steps):
-                self._space.step(STEP)
-                if watch is not None:
-                    gone += speed * STEP
-                    watch(gone, self._puck_pose())
+            left = steps
+            while left > 0:
+                stride, count = 1, 1
+                if left > 1:
+                    puck_now, tool_now = self._puck.position, self._tool.position
+                    stride, count = pace.next(puck_now, tool_now, speed, left)
+                left -= stride * count
+                for _ in range(count):
+                    self._space.step(stride * STEP)
+                    if watch is not None:
+                        gone += stride * speed * STEP
+                        watch(gone, self._puck_pose())
         self._settle(gone, watch)
         pose = self._puck_pose()
         if not all(map(math.isfinite, pose)):
@@ -119,9 +133,10 @@ class PushSimulator:
 
     def _lay_out(self, puck: Pose, wrist: Point) -> None:
         """Put puck and tool, at rest, where the push begins, with nothing left of the last one."""
-        self._place(puck, wrist)
-        # The engine starts each step from the joints' impulses of the step before. A step in which
-        # they may not exceed zero is the only way to make it forget them.
+        # The engine starts each step from the impulses of the step before, also when that step was
+        # the last of another push. A step with the puck far away ends every contact, and one in
+        # which the joints may not exceed zero is the only way to make them forget.
+        self._place(FAR_AWAY, wrist)
         for joint in self._joints:
             joint.max_force = 0.0
         self._space.step(STEP)

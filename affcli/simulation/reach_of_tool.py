@@ -35,13 +35,13 @@ def touchable(
 
 @lru_cache(maxsize=64)
 def _points(outlines: tuple[ConvexPolygon, ...]) -> tuple[Point, ...]:
-    """Return the corners of the parts and points between them, on the tool's outline (in)."""
-    shares = (0.0, 0.25, 0.5, 0.75)
+    """Return points on the tool's outline (in): the middles of the edges first, corners last."""
+    shares = (0.5, 0.25, 0.75, 0.0)
     return tuple(
         Point(a.x + t * (b.x - a.x), a.y + t * (b.y - a.y))
+        for t in shares
         for part in outlines
         for a, b in part.edges
-        for t in shares
     )
 
 

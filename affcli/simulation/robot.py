@@ -74,7 +74,7 @@ class SimulatedRobot:
     def _carry(self, path: WristPath) -> ExecutionStatus:
         """Move lifted and lower the tool; keep it lifted there when the attractor lies under it."""
         target = Point(on_grid(path.end.x), on_grid(path.end.y))
-        if not self.reaches(np.array([target.x]), np.array([target.y]))[0]:
+        if not (self._low.holds(target) and self._high.holds(target)):
             return ExecutionStatus.OUT_OF_REACH
         travel = math.dist(self._world.wrist, target)
         self.clock += path.dwell + trapezoid_time(travel, path.speed, path.acceleration)

@@ -2,7 +2,7 @@
 
 A puck that presses evenly on the table resists sliding and turning together: the faster it turns
 about its own centre, the less it resists being moved sideways. One joint for sliding and one for
-turning miss that; a set of points, each with its share of the weight, gets it right.
+turning miss that; a ring of points, each with its share of the weight, gets it right.
 """
 
 import math
@@ -11,11 +11,13 @@ import pymunk
 
 from affcli.core.workspace import PuckGeometry, SurfaceFriction
 
-POINTS_A_RING = 4
-RING_RADII = (0.4714, 0.8619)
-"""Radii of the two rings as shares of the puck's radius: where the inner and the outer half of a
-disc's area have their mean distance from the centre. Both rings of four then resist turning as an
-even pressure does (mean distance 2/3 of the radius)."""
+POINTS = 12
+"""Against a quasi-static solver with even pressure, 300 pushes of 5 in end off by 0.001 in in the
+median and 0.15 in at most; with 8 points by 0.01 and 0.18, with 6 by 0.03 and 0.28. A few points
+favour some directions, and roll a puck along an edge that should only push it."""
+RING_RADIUS = 2.0 / 3.0
+"""Share of the puck's radius at which a ring resists turning as an even pressure does: the mean
+distance of a disc's points from its centre."""
 
 
 def surface_friction(
@@ -26,17 +28,14 @@ def surface_friction(
     Each pivot opposes the velocity of one point of the puck with at most its share of the friction
     force. `max_bias` is 0: a pivot brakes, it never pulls the puck back to where it was.
     """
-    share = friction.puck_table * shape.mass * friction.gravity / (POINTS_A_RING * len(RING_RADII))
+    share = friction.puck_table * shape.mass * friction.gravity / POINTS
     joints = []
-    for ring, relative in enumerate(RING_RADII):
-        for k in range(POINTS_A_RING):
-            angle = math.pi * (k + 0.5 * ring) * 2.0 / POINTS_A_RING
-            point = (
-                relative * shape.radius * math.cos(angle),
-                relative * shape.radius * math.sin(angle),
-            )
-            joint = pymunk.PivotJoint(table, puck, (0.0, 0.0), point)
-            joint.max_force = share
-            joint.max_bias = 0.0
-            joints.append(joint)
+    for k in range(POINTS):
+        angle = 2.0 * math.pi * k / POINTS
+        radius = RING_RADIUS * shape.radius
+        point = (radius * math.cos(angle), radius * math.sin(angle))
+        joint = pymunk.PivotJoint(table, puck, (0.0, 0.0), point)
+        joint.max_force = share
+        joint.max_bias = 0.0
+        joints.append(joint)
     return joints

@@ -30,7 +30,8 @@ class World:
     @property
     def home(self) -> Point:
         """Where the wrist is while it holds a tool that lies at the table's centre (§7.1)."""
-        return Point(0.0, on_grid(self.workspace.layout.wrist_start_y))
+        start = self.workspace.wrist_start
+        return Point(on_grid(start.x), on_grid(start.y))
 
     @property
     def tool(self) -> Tool:

@@ -41,7 +41,8 @@ def trapezoid(distance: float, speed: float, acceleration: float) -> tuple[Stret
         speed: cruise speed (in/s).
         acceleration: in/s^2, rounded so that a ramp is a whole number of steps.
 
-    A remainder shorter than one cruise step is covered by one slower step before slowing down.
+    A remainder shorter than one cruise step is covered by one more step while slowing down, where
+    its speed belongs: a step out of order would be a jerk that throws the puck off the tool.
     """
     ramp_steps = max(1, round(speed / (acceleration * STEP)))
     gain = max(1, round(speed / ramp_steps * 2**10)) / 2**10
@@ -51,10 +52,9 @@ def trapezoid(distance: float, speed: float, acceleration: float) -> tuple[Stret
     top = gain * ramp_steps if ramp_steps else speed
     cruise = int(rest / (top * STEP))
     remainder = (rest - cruise * top * STEP) / STEP
-    up = [Stretch(v, 1) for v in ramp]
+    down = sorted([*ramp, remainder] if remainder else ramp, reverse=True)
     middle = [Stretch(top, cruise)] if cruise else []
-    tail = [Stretch(remainder, 1)] if remainder else []
-    return (*up, *middle, *tail, *reversed(up))
+    return (*(Stretch(v, 1) for v in ramp), *middle, *(Stretch(v, 1) for v in down))
 
 
 @lru_cache(maxsize=1024)

@@ -60,8 +60,8 @@ class Connected:
     def _transaction(self, begin: str) -> Iterator[sa.Connection]:
         """Begin, and at the end commit; roll back whatever goes wrong, ctrl-C too."""
         with faults_named(self.path, self._timeout):
-            self._say(begin)
             try:
+                self._say(begin)
                 yield self._connection
                 # While others read nobody can commit; the transaction stays open meanwhile.
                 self._say("COMMIT")

@@ -11,7 +11,7 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 
 from affcli.errors import DatabaseError, one_line
-from affcli.store.faults import REMEDIES, faults_named, primary_code
+from affcli.store.faults import REMEDIES, faults_named
 from affcli.store.identity import stored_revision
 from affcli.store.patience import ATTEMPT, patiently
 
@@ -66,7 +66,7 @@ def opened(path: Path, mode: str, timeout: float) -> Iterator[sqlite3.Connection
     """
     with faults_named(path, timeout):
         driver = _connected(path, mode)
-        if mode != "rwc" and _wants_shared_memory(driver):
+        if mode != "rwc" and _lacks_shared_memory(driver, path):
             driver.close()
             driver = _connected(path, "ro&immutable=1")
     with closing(driver):
@@ -80,16 +80,19 @@ def _connected(path: Path, mode: str) -> sqlite3.Connection:
     return sqlite3.connect(uri, uri=True, timeout=ATTEMPT, isolation_level=None)
 
 
-def _wants_shared_memory(driver: sqlite3.Connection) -> bool:
-    """Tell whether reading fails for want of a file beside the database.
+def _lacks_shared_memory(driver: sqlite3.Connection, path: Path) -> bool:
+    """Tell whether this is a WAL database at rest in a folder that cannot be written.
 
-    A WAL database in a folder that cannot be written: SQLite could not make its -shm file there.
-    Nobody else can write there either, so it may be read as one that never changes.
+    SQLite cannot make the file there that it shares with other processes; the database can still be
+    read as one that does not change.
     """
     try:
         driver.execute("SELECT 1 FROM sqlite_master")
-    except sqlite3.Error as error:
-        return primary_code(error) == sqlite3.SQLITE_CANTOPEN
+    except sqlite3.OperationalError as error:
+        cannot = (sqlite3.SQLITE_READONLY_DIRECTORY, sqlite3.SQLITE_CANTOPEN)
+        return error.sqlite_errorcode in cannot and not Path(f"{path}-wal").exists()
+    except sqlite3.DatabaseError:
+        pass  # `look` says what it is
     return False
 
 

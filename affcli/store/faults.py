@@ -10,7 +10,17 @@ from affcli.errors import DatabaseError, one_line
 
 BUSY = frozenset({sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_PROTOCOL})
 
+PRIMARY = 0xFF
+"""The bits of a result code that say the kind; the others say more exactly what happened."""
+
+INTERRUPTED_WRITE = (
+    "was left in the middle of a write and you may not set it right; let somebody open it who may "
+    "write there"
+)
+
 REMEDIES = {
+    sqlite3.SQLITE_READONLY_ROLLBACK: INTERRUPTED_WRITE,
+    sqlite3.SQLITE_READONLY_RECOVERY: INTERRUPTED_WRITE,
     sqlite3.SQLITE_READONLY: "cannot be written, the file or its folder is read-only; "
     "allow yourself to write there, or name another file with --db",
     sqlite3.SQLITE_PERM: "access is denied; allow yourself to read and write the file",
@@ -24,14 +34,18 @@ REMEDIES = {
     sqlite3.SQLITE_NOTADB: "not a SQLite database; name another file with --db",
     sqlite3.SQLITE_NOLFS: "too large for this file system; move it to another",
 }
-"""By SQLite's primary result code. What is not listed is a bug and keeps its traceback."""
+"""By SQLite's result code. What is not listed is a bug and keeps its traceback."""
 
 
-def primary_code(error: BaseException) -> int | None:
-    """Return SQLite's primary result code of an error of sqlite3 or SQLAlchemy, None of others."""
+def result_code(error: BaseException) -> int:
+    """Return SQLite's result code of an error of sqlite3 or SQLAlchemy, 0 of all others."""
     cause = getattr(error, "orig", None) or error
-    code = getattr(cause, "sqlite_errorcode", None)
-    return None if code is None else code & 0xFF
+    return int(getattr(cause, "sqlite_errorcode", 0))
+
+
+def is_busy(error: BaseException) -> bool:
+    """Tell whether an error says that another process holds a lock."""
+    return result_code(error) & PRIMARY in BUSY
 
 
 @contextmanager
@@ -45,14 +59,15 @@ def faults_named(path: Path, waited: float) -> Iterator[None]:
     try:
         yield
     except Exception as error:
-        code = primary_code(error)
-        if code in BUSY:
+        code = result_code(error)
+        if is_busy(error):
             raise DatabaseError(
                 f"{one_line(path)}: locked for more than {waited:g} s by {_lock_holder(path)}; "
                 "wait until it is done, then run the command again"
             ) from error
-        if code in REMEDIES:
-            raise DatabaseError(f"{one_line(path)}: {REMEDIES[code]}") from error
+        remedy = REMEDIES.get(code) or REMEDIES.get(code & PRIMARY)
+        if remedy is not None:
+            raise DatabaseError(f"{one_line(path)}: {remedy}") from error
         raise
 
 
@@ -62,10 +77,14 @@ def _lock_holder(path: Path) -> str:
     for name in (path, Path(f"{path}-shm")):
         with suppress(OSError):
             inodes.add(name.stat().st_ino)
+    holders: dict[str, str] = {}
     with suppress(OSError, ValueError):
         for line in Path("/proc/locks").read_text().splitlines():
             _, kind, _, access, pid, place, *_ = line.split()
-            held = kind == "POSIX" and access == "WRITE" and int(pid) not in (0, os.getpid())
-            if held and int(place.split(":")[2]) in inodes:
-                return f"process {pid}, probably another affcli"
-    return "another process, probably another affcli"
+            # 0 is a process of another container.
+            ours = kind == "POSIX" and int(place.split(":")[2]) in inodes
+            if ours and int(pid) not in (0, os.getpid()):
+                holders[access] = f"process {pid}"
+    # Without a writer it is a reader who keeps a transaction from being committed.
+    holder = holders.get("WRITE") or holders.get("READ") or "another process"
+    return f"{holder}, probably another affcli"

@@ -11,6 +11,12 @@ APPLICATION_ID = int.from_bytes(b"affc", "big")
 REVISION = "0001"
 """The revision of ``migrations/`` that this code reads and writes."""
 
+RELATIONS = frozenset(
+    {"session", "learning_run", "behavior", "affordance", "trial", "step"}
+    | {"affordance_table", "affordance_wide"}
+)
+"""The tables and views of that revision."""
+
 
 def stored_revision(connection: sqlite3.Connection, path: Path) -> str | None:
     """Return the schema revision a database stands at; None when nothing is in it.
@@ -28,12 +34,16 @@ def stored_revision(connection: sqlite3.Connection, path: Path) -> str | None:
         raise DatabaseError(
             f"{one_line(path)}: a SQLite database of another program; name another file with --db"
         )
-    if "alembic_version" in names:
+    missing = "alembic_version"
+    if missing in names:
         revisions = connection.execute("SELECT version_num FROM alembic_version").fetchall()
         if len(revisions) == 1:
-            return str(revisions[0][0])
+            revision = str(revisions[0][0])
+            missing = min(RELATIONS - names, default="") if revision == REVISION else ""
+            if not missing:
+                return revision
     raise DatabaseError(
-        f"{one_line(path)}: damaged, its schema revision is missing; restore a copy of the file"
+        f"{one_line(path)}: damaged, its {missing} is missing; restore a copy of the file"
     )
 
 
@@ -53,4 +63,4 @@ def require_current(revision: str, path: Path) -> None:
 
 def is_older(revision: str) -> bool:
     """Tell whether `revision` comes before this code's; a text it does not know comes after."""
-    return revision.isdecimal() and int(revision) < int(REVISION)
+    return len(revision) == len(REVISION) and revision.isdecimal() and revision < REVISION

@@ -1,4 +1,7 @@
-"""Bringing a database to the schema of this code, in one transaction (Alembic, imported late)."""
+"""Bringing a database to the schema of this code, in one transaction (Alembic, imported late).
+
+A new revision: ``alembic revision --rev-id 0002 -m "what it does"``, and `REVISION` in `identity`.
+"""
 
 from pathlib import Path
 

@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 from typing import TypeVar
 
-from affcli.store.faults import BUSY, primary_code
+from affcli.store.faults import is_busy
 
 T = TypeVar("T")
 
@@ -28,5 +28,5 @@ def patiently(action: Callable[[], T], seconds: float) -> T:
         try:
             return action()
         except Exception as error:
-            if primary_code(error) not in BUSY or time.monotonic() >= deadline:
+            if not is_busy(error) or time.monotonic() >= deadline:
                 raise

@@ -277,7 +277,7 @@ def _insert_trials(
 def _affordance_ids(connection: sa.Connection, run_id: int) -> dict[int, int]:
     """Return the ids of a run's affordances by learning step."""
     columns = sa.select(affordance.c.step, affordance.c.id).filter_by(learning_run_id=run_id)
-    return dict(connection.execute(columns).tuples().all())
+    return {row.step: row.id for row in connection.execute(columns)}
 
 
 def _part_of(session_id: int) -> sa.ColumnElement[bool]:

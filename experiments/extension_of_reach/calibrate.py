@@ -38,7 +38,6 @@ OPEN_SIZES = (
     ("layout", "goal_2_y", 25.5, 30.0),
     ("layout", "goal_side_x", 11.5, 15.0),
     ("layout", "goal_half_width", 2.0, 3.0),
-    ("layout", "wrist_start_y", 10.0, 18.5),
     ("table", "half_width", 14.0, 18.0),
     ("table", "near", 9.0, 14.0),
     ("table", "far", 28.5, 35.0),

@@ -1,7 +1,7 @@
 """The first schema: sessions, learning runs, behaviors, affordances, trials, steps, two views.
 
-Two copies of one vocabulary, on purpose: a migration is history and must not change when the code
-does. A test compares what it makes with ``affcli.store.schema``.
+It spells out names that the code has too, on purpose: a migration is history and must not change
+when the code does. A test compares what it makes with ``affcli.store.tables``.
 """
 
 import sqlite3

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from affcli.core.affordance import REPLICATION_ANGLE_DEGREES, replicates
@@ -27,6 +27,7 @@ def test_both_counters_are_1_when_a_row_is_made() -> None:
     assert row.replication_probability == 1.0
 
 
+@settings(deadline=None)
 @given(st.integers(1, 500), st.integers(0, 500))
 def test_the_replication_probability_is_successes_over_uses(used: int, successful: int) -> None:
     """§6.2: "replication probability (times_successful/times_used)"."""
@@ -39,6 +40,7 @@ def test_the_sample_row_of_the_paper_has_a_probability_of_75_percent() -> None:
     assert affordance(used=4, successful=3).replication_probability == 0.75
 
 
+@settings(deadline=None)
 @given(places, places, eighths, eighths)
 def test_the_expected_movement_is_the_end_less_the_start(
     at: Point, offset: Point, dx: float, dy: float
@@ -50,6 +52,7 @@ def test_the_expected_movement_is_the_end_less_the_start(
     assert row.start.wrist_to_object == offset
 
 
+@settings(deadline=None)
 @given(degrees, st.floats(-180.0, 180.0), st.floats(0.6, 9.0), st.floats(0.51, 9.0))
 def test_a_use_is_successful_within_40_degrees_of_the_stored_movement(
     direction: float, off: float, expected: float, seen: float
@@ -75,6 +78,7 @@ def test_40_degrees_itself_is_within_40_degrees() -> None:
     assert replicates(moved_by(1.0, 0.0), at_the_edge)
 
 
+@settings(deadline=None)
 @given(degrees, st.floats(0.0, 0.4999), st.floats(0.6, 9.0))
 def test_a_movement_that_t_would_not_detect_is_a_failure_in_whatever_direction(
     direction: float, seen: float, expected: float

@@ -2,7 +2,7 @@
 
 import math
 
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from affcli.core.change_detection import MOVEMENT_THRESHOLD, change_detected
@@ -15,6 +15,7 @@ def test_the_threshold_is_half_an_inch() -> None:
     assert MOVEMENT_THRESHOLD == 0.5
 
 
+@settings(deadline=None)
 @given(places, st.integers(-12, 12), st.integers(-12, 12))
 def test_t_is_1_when_the_attractor_moved_more_than_half_an_inch(
     at: Point, east: int, north: int
@@ -35,6 +36,7 @@ def test_t_is_0_at_exactly_half_an_inch_and_1_just_above() -> None:
     assert change_detected(start, observation(Point(math.nextafter(0.5, 1.0), 20.0)))
 
 
+@settings(deadline=None)
 @given(places, eighths, eighths)
 def test_a_wrist_that_moves_alone_is_no_change(at: Point, x: float, y: float) -> None:
     """§5.2: T "was defined with the first three components": the wrist does not count."""

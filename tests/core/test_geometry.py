@@ -4,7 +4,7 @@ import math
 
 import pytest
 import shapely
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from affcli.core.geometry import (
@@ -17,7 +17,8 @@ from affcli.core.geometry import (
 )
 
 coordinates = st.floats(-40.0, 40.0, allow_nan=False)
-points = st.builds(Point, coordinates, coordinates)
+thousandths = st.integers(-40_000, 40_000).map(lambda n: n / 1000.0)
+points = st.builds(Point, thousandths, thousandths)
 
 
 @st.composite
@@ -95,7 +96,9 @@ def test_directions_count_from_the_right_toward_away(dx: float, dy: float, degre
     assert direction_degrees(dx, dy) == pytest.approx(degrees)
 
 
+@settings(deadline=None)
 @given(coordinates, coordinates)
+@example(5.0, -1e-16)
 def test_every_direction_lies_from_0_up_to_360_degrees(dx: float, dy: float) -> None:
     assume(math.hypot(dx, dy) > 1e-6)
     direction = direction_degrees(dx, dy)

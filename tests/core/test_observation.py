@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from affcli.core.geometry import Point
@@ -36,11 +36,13 @@ def test_a_movement_is_the_end_less_the_start_in_the_table_frame() -> None:
     assert movement(start, start._replace(object_z=2.0)) == (0.0, 0.0, 2.0)
 
 
+@settings(deadline=None)
 @given(movements)
 def test_distance_is_euclidean_over_three_components(m: Movement) -> None:
     assert m.distance == pytest.approx(math.hypot(*m))
 
 
+@settings(deadline=None)
 @given(movements, movements)
 def test_the_angle_does_not_depend_on_order_and_lies_within_half_a_turn(
     a: Movement, b: Movement
@@ -50,6 +52,7 @@ def test_the_angle_does_not_depend_on_order_and_lies_within_half_a_turn(
     assert angle == pytest.approx(angle_between_degrees(b, a), abs=1e-6)
 
 
+@settings(deadline=None)
 @given(st.floats(0.0, 360.0), st.floats(0.0, 180.0), st.floats(0.1, 30.0), st.floats(0.1, 30.0))
 def test_the_angle_is_that_between_the_directions_whatever_the_lengths(
     first: float, between: float, length: float, other: float
@@ -60,12 +63,14 @@ def test_the_angle_is_that_between_the_directions_whatever_the_lengths(
     assert angle_between_degrees(one, two) == pytest.approx(between, abs=1e-6)
 
 
+@settings(deadline=None)
 @given(movements)
 def test_a_movement_of_zero_has_no_direction_and_fits_none(m: Movement) -> None:
     zero = Movement(0.0, 0.0, 0.0)
     assert angle_between_degrees(m, zero) == angle_between_degrees(zero, m) == 180.0
 
 
+@settings(deadline=None)
 @given(movements)
 def test_opposite_movements_are_half_a_turn_apart(m: Movement) -> None:
     assume(m.distance > 1e-3)

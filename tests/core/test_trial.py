@@ -1,7 +1,7 @@
 """What a step of a trial says of its row (§3.2, §6.2)."""
 
 import numpy as np
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from affcli.core.affordance import Affordance
@@ -30,6 +30,7 @@ def step_with(row: Affordance, *, replicated: bool) -> StepRecord:
     )
 
 
+@settings(deadline=None)
 @given(st.integers(1, 50), st.integers(0, 50), st.booleans())
 def test_a_row_has_died_when_search_2_no_longer_finds_it(
     used: int, successful: int, replicated: bool

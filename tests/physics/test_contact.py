@@ -78,24 +78,43 @@ def test_the_first_contact_is_the_one_found_by_searching_the_motion(
     assert (math.inf if travel is None else travel) == pytest.approx(first, abs=1e-6)
 
 
-@given(tool=tools, direction=directions, center=centers)
-@settings(max_examples=200, deadline=None)
+@given(tool=tools, center=centers, data=st.data())
 def test_at_the_first_contact_the_puck_touches_the_tool(
-    tool: tuple[ConvexPolygon, ...], direction: Point, center: Point
+    tool: tuple[ConvexPolygon, ...], center: Point, data: st.DataObject
 ) -> None:
-    travel = travel_to_contact(tool, direction, 40.0, center, RADIUS)
-    assume(travel)
+    """The tool is aimed at the puck with some corner of it, so it cannot miss."""
+    corner = data.draw(st.sampled_from(tool[0].vertices))
+    way = math.dist(corner, center)
+    assume(way > 1e-3)
+    direction = Point((center.x - corner.x) / way, (center.y - corner.y) / way)
+    travel = travel_to_contact(tool, direction, way, center, RADIUS)
     assert travel is not None
     at = Point(center.x - travel * direction.x, center.y - travel * direction.y)
-    assert distance_to_union(tool, at) == pytest.approx(RADIUS, abs=1e-7)
+    if travel > 0.0:
+        assert distance_to_union(tool, at) == pytest.approx(RADIUS, abs=1e-7)
+    else:
+        assert distance_to_union(tool, center) <= RADIUS + 1e-7
 
 
-@given(tool=tools, direction=directions, center=centers)
-def test_a_disc_that_the_tool_touches_already_has_no_way_to_contact(
-    tool: tuple[ConvexPolygon, ...], direction: Point, center: Point
-) -> None:
-    assume(distance_to_union(tool, center) <= RADIUS)
-    assert travel_to_contact(tool, direction, 0.0, center, RADIUS) == 0.0
+def touching(a: Point, b: Point, share: float) -> tuple[Point, Point]:
+    """Return the centre of a disc that touches the edge from a to b, and the edge's normal."""
+    length = math.dist(a, b)
+    normal = Point((b.y - a.y) / length, (a.x - b.x) / length)
+    x, y = a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)
+    return Point(x + RADIUS * normal.x, y + RADIUS * normal.y), normal
+
+
+@pytest.mark.parametrize("shape", tuple(SHAPES))
+def test_a_disc_that_touches_the_tool_to_the_last_bits_has_no_way_to_contact(shape: str) -> None:
+    """Whether or not rounding makes it overlap the edge that is about to push it."""
+    tool = SHAPES[shape]
+    for a, b in (edge for part in tool for edge in part.edges):
+        for share in np.linspace(0.0, 1.0, 101):
+            center, normal = touching(a, b, float(share))
+            for direction in DIRECTIONS:
+                if direction.x * normal.x + direction.y * normal.y > 0.1:
+                    travel = travel_to_contact(tool, direction, 5.0, center, RADIUS)
+                    assert travel == pytest.approx(0.0, abs=1e-9)
 
 
 @given(tool=tools, direction=directions, center=centers, length=lengths, more=lengths)

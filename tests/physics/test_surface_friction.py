@@ -2,13 +2,12 @@
 
 import math
 
-import numpy as np
 import pymunk
 import pytest
 
 from affcli.core.geometry import Point, Pose
 from affcli.simulation.surface_friction import surface_friction
-from affcli.simulation.wrist_motion import STEP, Stretch
+from affcli.simulation.wrist_motion import STEP, Stretch, trapezoid
 from tests.physics.pushes import AHEAD, RADIUS, WORKSPACE, simulator
 from tests.physics.quasi_static import limit_surface
 
@@ -58,8 +57,10 @@ def slide_of_a_disc(speed: float, spin: float, step: float = STEP / 64) -> tuple
 def test_a_puck_that_slides_without_turning_stops_after_v_squared_over_two_mu_g(
     heading: float,
 ) -> None:
+    """Within 3 %: a pivot off the centre brakes a little aside of its velocity, through the puck's
+    inertia about the centre, and what two opposite pivots do across the motion cancels."""
     distance, angle = slide(SPEED, 0.0, heading)
-    assert distance == pytest.approx(SPEED**2 / (2.0 * BRAKE), rel=0.02)
+    assert distance == pytest.approx(SPEED**2 / (2.0 * BRAKE), rel=0.03)
     assert angle == pytest.approx(0.0, abs=1e-3)
 
 
@@ -76,10 +77,10 @@ def test_a_puck_that_only_spins_stops_as_two_thirds_of_its_radius_make_it() -> N
 def test_a_puck_that_slides_and_spins_stops_where_an_even_pressure_stops_it(
     spin: float, heading: float
 ) -> None:
-    """Within a hundredth of an inch and a degree."""
+    """Within five thousandths of an inch and a degree."""
     distance, angle = slide(SPEED, spin, heading)
     right_distance, right_angle = slide_of_a_disc(SPEED, spin)
-    assert distance == pytest.approx(right_distance, abs=0.01)
+    assert distance == pytest.approx(right_distance, abs=0.005)
     assert angle == pytest.approx(right_angle, abs=math.radians(1.0))
 
 
@@ -98,7 +99,9 @@ def test_a_tool_that_stops_at_once_lets_the_puck_slide_until_friction_has_taken_
     assert end.x == pytest.approx(puck.x, abs=1e-3)
 
 
-def test_a_tool_that_slows_down_gently_keeps_the_puck() -> None:
-    """The wrist brakes more gently than the table does, so the puck never leaves the bar."""
-    assert WORKSPACE.motion.push_acceleration < BRAKE
-    assert np.isfinite(BRAKE)
+def test_a_tool_that_slows_down_as_the_arm_does_keeps_the_puck() -> None:
+    """The wrist brakes more gently than the table does, so the puck stays at the bar."""
+    puck = Pose(3.0, 10.0 + WORKSPACE.tools.handle_length + RADIUS)
+    motion = trapezoid(5.0, SPEED, WORKSPACE.motion.push_acceleration)
+    end = simulator("t-stick").push(puck, Point(0.0, 10.0), AHEAD, motion)
+    assert end.y == pytest.approx(puck.y + 5.0, abs=0.001)

@@ -14,6 +14,7 @@ from affcli.core.affordance_table import COLOR_TOLERANCE, AffordanceTable, Rows
 from affcli.core.geometry import Point
 from affcli.core.observation import Observation
 from affcli.core.tool import TOOL_COLORS, Color, ToolName
+from affcli.planning import nested_query
 from affcli.planning.nested_query import (
     choose_row,
     consistent_with_colors,
@@ -26,7 +27,6 @@ from tests.factories import (
     EIGHTH,
     TOOL_COLOR,
     affordance,
-    eighths,
     goal_at,
     observation,
     places,
@@ -121,7 +121,7 @@ def test_search_2_selects_rows_with_a_probability_greater_than_half(
     ("used", "successful", "lives"),
     [(1, 1, True), (2, 1, False), (3, 2, True), (4, 2, False), (4, 3, True), (1, 0, False)],
 )
-def test_search_2_is_strict(used: int, successful: int, lives: bool) -> None:  # noqa: FBT001
+def test_search_2_is_strict(used: int, successful: int, lives: bool) -> None:
     """§6.2: "it takes only one unsuccessful behavioral execution in order to eliminate an
     affordance": 1/2 is out, 2/3 is in."""
     table = table_of(affordance(used=used, successful=successful))
@@ -165,6 +165,40 @@ def test_of_n_rows_the_top_20_percent_are_at_least_one_and_a_fifth_rounded_up(
     table = table_of(*(affordance(k, moved=(float(k % 7), 1.0)) for k in range(rows)))
     found = top_by_expected_distance(table, all_of(table), observation(), goal_at(0.0, 0.0))
     assert len(found) == kept == max(1, math.ceil(rows / 5))
+
+
+@pytest.mark.parametrize("long", [8, 32])
+@settings(deadline=None)
+@given(rows=rows_drawn(60), at=near_places, sample=st.integers(1, 12))
+def test_the_short_cut_for_long_tables_leaves_the_same_rows(
+    long: int, rows: list[Affordance], at: Point, sample: int
+) -> None:
+    """However the k-th smallest distance is found, also where a sample misleads."""
+    table, goal = AffordanceTable(rows), goal_at(0.5, 0.5)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(nested_query, "LONG", max(long, sample))
+        patched.setattr(nested_query, "SAMPLE", sample)
+        found = top_by_expected_distance(table, all_of(table), seen_at(at), goal)
+    ranked = naive.sorted_by_expected_distance(list(enumerate(rows)), seen_at(at), goal)
+    assert found.tolist() == (places_of(naive.top_fifth(ranked)) if rows else [])
+
+
+@pytest.mark.parametrize("order", ["as they come", "nearest first", "farthest first", "all alike"])
+def test_a_table_long_enough_for_the_short_cut_is_cut_like_any_other(order: str) -> None:
+    n = nested_query.LONG + 13
+    sizes = np.random.default_rng(0).integers(0, 400, n) * EIGHTH
+    if order != "as they come":
+        sizes.sort()
+    if order == "farthest first":
+        sizes = sizes[::-1]
+    if order == "all alike":
+        sizes[:] = 3.0
+    table = AffordanceTable([affordance(1)] * n)
+    table.movement_x, table.movement_y = sizes.copy(), np.zeros(n)
+    seen, goal = seen_at(Point(0.0, 0.0)), goal_at(0.0, 0.0)
+    found = top_by_expected_distance(table, all_of(table), seen, goal)
+    oldest_first = sorted(range(n), key=lambda k: (sizes[k], k))
+    assert found.tolist() == sorted(oldest_first[: math.ceil(n / 5)])
 
 
 @pytest.mark.parametrize("rows", [5, 17, 50])

@@ -11,9 +11,12 @@ import time
 from pathlib import Path
 
 from affcli.errors import DatabaseError
-from affcli.store import open_store, run_sql
-from tests.factories import learning_spec
-from tests.store.records import NOW, VERSIONS, learned, learning_steps
+from affcli.store import Store, open_store, run_sql
+
+
+def write_something(store: Store) -> None:
+    """Write, without importing what makes records: it takes longer than all that is tested."""
+    store.begin_session("solve", 0, 1, "{}", {}, "now")
 
 
 def ready() -> None:
@@ -27,7 +30,7 @@ def first_run(path: Path) -> None:
     ready()
     sys.stdin.readline()
     with open_store(path, create=True, write=True) as store:
-        store.begin_learning(learning_spec(), VERSIONS, NOW)
+        write_something(store)
 
 
 def hold_write_lock(path: Path) -> None:
@@ -52,11 +55,14 @@ def wait_for_lock(path: Path) -> None:
     """Wait for a lock that nobody gives back, until ctrl-C."""
     with open_store(path, create=False, write=True) as store:
         ready()
-        learned(store)
+        write_something(store)
 
 
 def append_in_chunks(path: Path) -> None:
-    """Compute one long run in small chunks, going on from what is stored when another was faster."""
+    """Compute a long run in small chunks, going on from what is stored if another was faster."""
+    from tests.factories import learning_spec
+    from tests.store.records import NOW, VERSIONS, learning_steps
+
     spec = learning_spec(behaviors=120)
     with open_store(path, create=False, write=True) as store:
         ready()
@@ -85,27 +91,52 @@ def die_while_writing(path: Path) -> None:
 
 
 def without_permission(path: Path) -> None:
-    """Read and write as somebody who may not write, and say what happened."""
-    with open_store(path, create=False, write=False):
-        run_sql(path, "select 1")  # what is imported late is imported now, as root
+    """As somebody who may not write, read and write each folder's database; say what happened."""
+    # What is imported late is imported now, as root.
+    with open_store(path / "warm.db", create=True, write=True):
+        pass
+    run_sql(path / "warm.db", "select 1")
     if os.getuid() == 0:
         os.setgid(65534)
         os.setuid(65534)
+    for folder in path.glob("*/"):
+        for what in (reading, querying, writing, writing_anew):
+            try:
+                result = what(folder / "kept.db")
+            except DatabaseError as error:
+                result = str(error)
+            sys.stdout.write(f"{folder.name} {what.__name__}: {result}\n")
+
+
+def reading(path: Path) -> str:
+    """Read with the store."""
     with open_store(path, create=False, write=False) as store:
-        runs = len(store.learning_runs())
-    (count,) = run_sql(path, "select count(*) from learning_run").rows[0]
-    sys.stdout.write(f"read {runs} {count}\n")
-    for place, create in ((path, False), (path.with_name("new.db"), True)):
-        try:
-            with open_store(place, create=create, write=True) as store:
-                learned(store)
-        except DatabaseError as error:
-            sys.stdout.write(f"{error}\n")
+        return f"{len(store.learning_runs())} run"
+
+
+def querying(path: Path) -> str:
+    """Read with a query."""
+    ((count,),) = run_sql(path, "select count(*) from learning_run").rows
+    return f"{count!r} run"
+
+
+def writing(path: Path) -> str:
+    """Write into the database."""
+    with open_store(path, create=False, write=True) as store:
+        write_something(store)
+    return "written"
+
+
+def writing_anew(path: Path) -> str:
+    """Write into a new database beside it."""
+    with open_store(path.with_name("new.db"), create=True, write=True) as store:
+        write_something(store)
+    return "written"
 
 
 def killed_while_migrating(path: Path) -> None:
     """Make the schema in one child after another, each killed at a later statement."""
-    import sqlalchemy as sa  # noqa: PLC0415
+    import sqlalchemy as sa
 
     with open_store(path.with_name("warm.db"), create=True, write=True):
         pass  # everything is imported now: a child is a fork, and cheap
@@ -128,7 +159,7 @@ def killed_while_migrating(path: Path) -> None:
         tables = driver.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
         sound = driver.execute("PRAGMA integrity_check").fetchone()[0]
         driver.close()
-        sys.stdout.write(f"{statement} {status} {tables} {sound}\n")
+        sys.stdout.write(f"{statement} {status} {tables} {sound!s}\n")
         if status == 0:
             return
         time.sleep(0)

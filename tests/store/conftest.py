@@ -21,11 +21,12 @@ def empty_database(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def database(empty_database: Path, tmp_path: Path) -> Path:
     """A database without records, for this test alone."""
-    return shutil.copy(empty_database, tmp_path / "test.db")
+    return Path(shutil.copy(empty_database, tmp_path / "test.db"))
 
 
 @pytest.fixture
 def store(database: Path) -> Iterator[Store]:
-    """`database`, open for writing."""
+    """`database`, open for writing, without waiting for the disk."""
     with open_store(database, create=False, write=True) as opened:
+        opened._driver.execute("PRAGMA synchronous = OFF")
         yield opened

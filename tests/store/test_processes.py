@@ -36,7 +36,7 @@ def test_eight_first_runs_at_once_make_one_schema(tmp_path: Path) -> None:
         errors = [other.communicate(timeout=60)[1] for other in others]
     assert errors == [""] * 8
     assert [other.returncode for other in others] == [0] * 8
-    assert database_info(path).counts["learning runs"] == 1
+    assert database_info(path).counts["sessions"] == 8
     assert integrity(path) == "ok"
 
 
@@ -93,9 +93,11 @@ def test_ctrl_c_is_heard_while_waiting_for_a_lock(database: Path) -> None:
 
 def test_a_writer_waits_for_a_reader_and_loses_nothing(database: Path) -> None:
     with open_store(database, create=False, write=True, timeout=0.1) as hasty:
-        with child("hold_read_lock", database):
-            with pytest.raises(DatabaseError, match="locked for more than"):
+        with child("hold_read_lock", database) as reader:
+            with pytest.raises(DatabaseError, match=r"locked for more than 0\.1 s by") as caught:
                 learned(hasty)
+            if Path("/proc/locks").exists():
+                assert f"process {reader.pid}" in str(caught.value)
             assert hasty.learning_runs() == ()
         run = learned(hasty)
         assert run.behaviors == 9
@@ -151,25 +153,45 @@ def public_folder() -> Iterator[Path]:
         yield Path(name)
 
 
-@pytest.mark.parametrize("what", ["file", "folder", "both", "wal"])
+READ_ONLY = "the file or its folder is read-only"
+TORN = "was left in the middle of a write and you may not set it right"
+
+MAY_BE_WRITTEN = {  # file, folder
+    "file": (False, True),
+    "folder": (True, False),
+    "neither": (False, False),
+    "torn": (False, False),
+    "wal": (False, False),
+}
+
+
 def test_reading_needs_no_write_permission(
-    what: str, public_folder: Path, monkeypatch: pytest.MonkeyPatch
+    public_folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    path = public_folder / "kept.db"
-    if what == "wal":
-        monkeypatch.setattr("affcli.store.journal.journal_mode_for", lambda version: "wal")
-    with open_store(path, create=True, write=True) as store:
-        learned(store)
-    path.chmod(0o666 if what == "folder" else 0o444)
-    public_folder.chmod(0o777 if what == "file" else 0o555)
-    before = path.read_bytes()
-    try:
-        code, out, err = finished("without_permission", path)
-    finally:
-        public_folder.chmod(0o755)
+    """Somebody else may read what he may not write, however the file was left; and is told why."""
+    paths = {name: public_folder / name / "kept.db" for name in MAY_BE_WRITTEN}
+    for name, path in paths.items():
+        path.parent.mkdir()
+        with monkeypatch.context() as patch:
+            if name == "wal":
+                patch.setattr("affcli.store.journal.journal_mode_for", lambda version: "wal")
+            with open_store(path, create=True, write=True) as store:
+                learned(store, 300)
+    assert finished("die_while_writing", paths["torn"])[0] == -signal.SIGKILL
+    before = {name: path.read_bytes() for name, path in paths.items()}
+    for name, (file, folder) in MAY_BE_WRITTEN.items():
+        paths[name].chmod(0o666 if file else 0o444)
+        paths[name].parent.chmod(0o777 if folder else 0o555)
+    code, out, err = finished("without_permission", public_folder)
+    for path in paths.values():
+        path.parent.chmod(0o755)
     assert (code, err) == (0, "")
-    read, *refusals = out.splitlines()
-    assert read == "read 1 1"
-    assert len(refusals) == (1 if what == "file" else 2)  # a new file beside it may be made then
-    assert all("the file or its folder is read-only" in line for line in refusals)
-    assert path.read_bytes() == before
+    told = dict(line.split(": ", 1) for line in out.splitlines())
+    for name in MAY_BE_WRITTEN:
+        for way in ("reading", "querying"):
+            assert (TORN in told[f"{name} {way}"]) == (name == "torn")
+            assert told[f"{name} {way}"] == "1 run" or name == "torn"
+        assert READ_ONLY in told[f"{name} writing"]
+        anew = told[f"{name} writing_anew"]
+        assert anew == "written" if name == "file" else READ_ONLY in anew
+    assert {name: path.read_bytes() for name, path in paths.items()} == before

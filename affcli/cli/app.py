@@ -1,0 +1,43 @@
+"""The ``affcli`` program: its commands."""
+
+import typer
+
+from affcli import __version__
+from affcli.cli import (
+    break_tool,
+    db,
+    learn,
+    report,
+    reproduce,
+    solve,
+    sql,
+)
+from affcli.cli.terminal import show_text
+
+app = typer.Typer(
+    name="affcli",
+    help="A robot learns what tools are good for by playing with them (after Stoytchev, 2008).",
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+    add_completion=False,
+)
+app.command("learn")(learn.learn)
+app.command("solve")(solve.solve)
+app.command("break-tool")(break_tool.break_tool)
+app.command("report")(report.report)
+app.command("reproduce")(reproduce.reproduce)
+app.command("sql")(sql.sql)
+app.add_typer(db.app, name="db")
+
+
+@app.callback(invoke_without_command=True)
+def root(
+    context: typer.Context,
+    *,
+    version: bool = typer.Option(False, "--version", help="Print the version and leave."),
+) -> None:
+    """A robot learns what tools are good for by playing with them (after Stoytchev, 2008)."""
+    if version:
+        show_text(f"affcli {__version__}\n")
+        raise typer.Exit
+    db.help_without_command(context)

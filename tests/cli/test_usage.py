@@ -1,0 +1,152 @@
+"""What a person types wrong: exit 2 or 4, one line that says what to do, and no file made."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.cli.program import affcli, names_in, refused
+
+TOOLS = "stick or l-stick or l-hook or t-stick or t-hook"
+
+USAGE = {
+    "unknown command": (("lern",), "'lern'. Did you mean 'learn'?"),
+    "unknown option": (("learn", "--tol", "stick"), "No such option: --tol"),
+    "missing option": (("solve",), "Missing option '--goal'"),
+    "missing argument": (("sql",), "Missing argument 'QUERY'"),
+    "option without its value": (("learn", "--tool"), "'--tool' requires an argument"),
+    "too many arguments": (("report", "extra"), "unexpected extra argument"),
+    "option before its command": (("--db", "x.db", "report"), "No such option: --db"),
+    "unknown subcommand": (("db", "upgrad"), "Did you mean 'upgrade'?"),
+    "no tool": (("learn",), "give --tool stick|l-stick|l-hook|t-stick|t-hook, or --all-tools"),
+    "unknown tool": (("learn", "--tool", "t-hok"), "no tool 't-hok'; did you mean t-hook or "),
+    "far from any tool": (("learn", "--tool", "zzz"), f"did you mean {TOOLS}?"),
+    "no name at all": (("learn", "--tool", ""), f"no tool ''; did you mean {TOOLS}?"),
+    "one of several tools": (("learn", "--tool", "stick,hook"), "no tool 'hook'; did you mean "),
+    "tool and all tools": (("learn", "--all-tools", "--tool", "stick"), "not both"),
+    "hours and behaviors": (
+        ("learn", "--tool", "stick", "--hours", "1", "--behaviors", "5"),
+        "give --hours or --behaviors, not both",
+    ),
+    "hours in words": (("learn", "--tool", "stick", "--hours", "one"), "'--hours'"),
+    "behaviors in words": (("learn", "--tool", "stick", "--behaviors", "x"), "'--behaviors'"),
+    "seed in words": (("learn", "--tool", "stick", "--seed", "abc"), "'--seed'"),
+    "broken seed": (("learn", "--tool", "stick", "--seed", "1.5"), "'--seed'"),
+    "unknown tool to solve": (("solve", "--goal", "1", "--tool", "T-Hook"), "did you mean t-hook"),
+    "goal 0": (("solve", "--goal", "0"), "no goal '0'; did you mean 1 or 2 or 3 or 4?"),
+    "goal 5": (("solve", "--goal", "5"), "no goal '5'; did you mean 1 or 2 or 3 or 4?"),
+    "goal in words": (("solve", "--goal", "near"), "'--goal'"),
+    "start 5": (("solve", "--goal", "1", "--start", "5"), "did you mean 1 or 2 or 3 or 4 or all?"),
+    "start in words": (("solve", "--goal", "1", "--start", "al"), "did you mean all?"),
+    "unknown tool to break": (("break-tool", "--tool", "spoon"), "no tool 'spoon'"),
+    "unknown shape": (("break-tool", "--becomes", "l-hoo"), "did you mean l-hook"),
+    "same shape": (("break-tool", "--becomes", "t-hook"), "another shape than it was"),
+    "robots in words": (("reproduce", "--robots", "many"), "'--robots'"),
+}
+
+BAD_NUMBERS = {
+    "hours 0": ("learn", "--tool", "stick", "--hours", "0"),
+    "negative hours": ("learn", "--tool", "stick", "--hours", "-1"),
+    "negative hours, joined": ("learn", "--tool", "stick", "--hours=-0.5"),
+    "hours not a number": ("learn", "--tool", "stick", "--hours", "nan"),
+    "infinite hours": ("learn", "--tool", "stick", "--hours", "inf"),
+    "hours minus infinity": ("learn", "--tool", "stick", "--hours", "-inf"),
+    "hours past the limit": ("learn", "--tool", "stick", "--hours", "10000.1"),
+    "absurd hours": ("learn", "--tool", "stick", "--hours", "1e308"),
+    "behaviors 0": ("learn", "--tool", "stick", "--behaviors", "0"),
+    "negative behaviors": ("learn", "--tool", "stick", "--behaviors", "-5"),
+    "absurd behaviors": ("learn", "--tool", "stick", "--behaviors", "1" + "0" * 30),
+    "robots 0": ("reproduce", "--robots", "0"),
+    "negative robots": ("reproduce", "--robots", "-3"),
+    "absurd robots": ("reproduce", "--robots", "1" + "0" * 30),
+    "workers 0": ("reproduce", "--workers", "0"),
+    "absurd workers": ("reproduce", "--workers", "100000"),
+}
+
+SEEDED = (
+    ("learn", "--tool", "stick"),
+    ("solve", "--goal", "1"),
+    ("break-tool",),
+    ("reproduce",),
+)
+
+
+@pytest.mark.parametrize(("args", "says"), USAGE.values(), ids=USAGE.keys())
+def test_what_does_not_exist_is_a_usage_error(
+    args: tuple[str, ...], says: str, tmp_path: Path
+) -> None:
+    assert says in refused(2, *args, cwd=tmp_path)
+    assert names_in(tmp_path) == []
+
+
+@pytest.mark.parametrize("args", BAD_NUMBERS.values(), ids=BAD_NUMBERS.keys())
+def test_a_number_out_of_range_is_bad_input(args: tuple[str, ...], tmp_path: Path) -> None:
+    line = refused(4, *args, cwd=tmp_path)
+    option = next(arg.partition("=")[0] for arg in args if arg.startswith("--") and arg != "--tool")
+    assert option in line
+    assert "must " in line
+    assert names_in(tmp_path) == []
+
+
+@pytest.mark.parametrize("command", SEEDED, ids=lambda command: command[0])
+@pytest.mark.parametrize("seed", ["-1", str(2**63), str(10**40)])
+def test_a_seed_lies_in_0_to_2_63_minus_1(
+    command: tuple[str, ...], seed: str, tmp_path: Path
+) -> None:
+    line = refused(4, *command, "--seed", seed, cwd=tmp_path)
+    assert f"--seed {seed[:30]}" in line
+    assert line.endswith("must lie in 0 to 2^63 - 1")
+    assert names_in(tmp_path) == []
+
+
+def test_a_seed_of_5000_digits_is_refused(tmp_path: Path) -> None:
+    assert "--seed" in refused(2, "learn", "--tool", "stick", "--seed", "9" * 5000, cwd=tmp_path)
+
+
+STRANGE = {
+    "markup": "[/]",
+    "escape sequence": "\x1b[31mred\x1b[0m",
+    "carriage return": "t-hook\r\nall is well",
+    "no character at all": b"\xff\xfe",
+    "right to left": "\u202et-hook",
+    "10 kB": "x" * 10_000,
+    "SQL": "x'); DROP TABLE learning_run; --",
+    "a path": "../../etc/passwd",
+    "an option": "--",
+}
+
+
+@pytest.mark.parametrize("name", STRANGE.values(), ids=STRANGE.keys())
+def test_a_strange_name_is_one_printable_line(name: str | bytes, tmp_path: Path) -> None:
+    for args in (("learn", "--tool", name), ("solve", "--goal", "1", "--start", name)):
+        refused(2, *args, cwd=tmp_path)
+    assert names_in(tmp_path) == []
+
+
+@pytest.mark.parametrize("name", ["[/]", "\x1b[31mred", b"\xff", "x" * 10_000])
+def test_a_strange_command_or_option_is_one_printable_line(
+    name: str | bytes, tmp_path: Path
+) -> None:
+    as_bytes = name if isinstance(name, bytes) else name.encode()
+    refused(2, name, cwd=tmp_path)
+    refused(2, "report", b"--" + as_bytes, cwd=tmp_path)
+    refused(2, "solve", "--goal", name, cwd=tmp_path)
+
+
+@pytest.mark.parametrize("args", [(), ("db",)], ids=["affcli", "affcli db"])
+def test_without_a_command_it_says_which_there_are(args: tuple[str, ...], tmp_path: Path) -> None:
+    ended = affcli(*args, cwd=tmp_path)
+    assert ended.code == 2
+    assert ended.out == ""
+    assert "Usage: " in ended.err
+    assert "Commands:\n" in ended.err
+
+
+def test_help_and_version_are_results(tmp_path: Path) -> None:
+    for args in (("--help",), ("learn", "--help"), ("db", "info", "--help")):
+        ended = affcli(*args, cwd=tmp_path)
+        assert (ended.code, ended.err) == (0, "")
+        assert ended.out.startswith("Usage: ")
+    ended = affcli("--version", cwd=tmp_path)
+    assert (ended.code, ended.err) == (0, "")
+    assert ended.out.startswith("affcli ")
+    assert names_in(tmp_path) == []

@@ -1,0 +1,302 @@
+"""Behavioral babbling against a table without physics (§3.2, §6)."""
+
+import math
+from collections import Counter
+from dataclasses import replace
+from itertools import count, islice, repeat
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from affcli.behaviors.registry import paper_behaviors
+from affcli.core.affordance import Affordance
+from affcli.core.behavior import GRASP, POSITION_WRIST, ExecutionStatus
+from affcli.core.geometry import Point
+from affcli.core.trial import BabblingRecord
+from affcli.core.workspace import Workspace
+from affcli.procedures.babbling import BabblingSettings, BabblingState, babble
+from tests.factories import BINDING, EIGHTH, observation, places
+from tests.fakes import (
+    FakeExperimenter,
+    FakeRobot,
+    FakeSensor,
+    FakeTable,
+    no_effect,
+    nowhere,
+    scripted,
+)
+
+WORKSPACE = Workspace()
+CALLS = paper_behaviors(WORKSPACE.arm, WORKSPACE.motion, WORKSPACE.tools).exploratory
+MANY_DRAWS = BabblingSettings()
+BOX = replace(MANY_DRAWS, draws=4)
+"""The box of the product; where every place is in reach, four draws are plenty."""
+DONE, BLOCKED = ExecutionStatus.DONE, ExecutionStatus.BLOCKED
+small_movements = st.tuples(st.integers(-8, 8), st.integers(-8, 8)).map(
+    lambda m: (m[0] * EIGHTH, m[1] * EIGHTH)
+)
+
+
+def babbling(
+    behaviors: int,
+    robot: FakeRobot | None = None,
+    experimenter: FakeExperimenter | None = None,
+    *,
+    seed: int = 0,
+    box: BabblingSettings = BOX,
+    state: BabblingState | None = None,
+) -> list[BabblingRecord]:
+    """Return the records of the first behaviors of a robot that babbles on a fake table."""
+    robot = robot or FakeRobot(FakeTable())
+    experimenter = experimenter or FakeExperimenter(robot.table)
+    rng = np.random.default_rng(seed)
+    state = state or BabblingState()
+    sensor = FakeSensor(robot.table)
+    return list(
+        islice(babble(robot, sensor, experimenter, BINDING, CALLS, box, rng, state), behaviors)
+    )
+
+
+def choices(records: list[BabblingRecord]) -> list[object]:
+    """Return what a robot chose to do."""
+    return [(record.placing.call, record.execution.call) for record in records]
+
+
+@settings(deadline=None)
+@given(st.lists(small_movements, min_size=1, max_size=30), st.integers(0, 99))
+def test_a_row_is_made_if_and_only_if_t_is_1(
+    movements: list[tuple[float, float]], seed: int
+) -> None:
+    """§3.2: "New rows are added to the table only if T was on while the exploratory behavior was
+    performed." And every behavior is recorded, also the one without effect."""
+    robot = FakeRobot(FakeTable(), effect=scripted(movements))
+    records = babbling(len(movements), robot, seed=seed)
+    assert len(records) == len(movements)
+    assert [record.step for record in records] == list(range(1, len(movements) + 1))
+    for record, (dx, dy) in zip(records, movements, strict=True):
+        assert (record.affordance is not None) is (4.0 * (dx * dx + dy * dy) > 1.0)
+        assert record.end.object_x - record.start.object_x == dx
+        assert record.end.object_y - record.start.object_y == dy
+
+
+@settings(deadline=None)
+@given(st.integers(0, 99))
+def test_a_row_holds_what_was_done_and_seen_with_both_counters_1(seed: int) -> None:
+    """§3.2: binding behavior and parameters, exploratory behavior and parameters, O^s, O^e, and
+    "During learning, the integer counters of all rows are set to 1"."""
+    for record in babbling(8, FakeRobot(FakeTable(), effect=lambda call: (0.0, 2.0)), seed=seed):
+        assert record.affordance == Affordance(
+            step=record.step,
+            binding=BINDING,
+            exploratory=record.execution.call,
+            start=record.start,
+            end=record.end,
+            truncated=False,
+            times_used=1,
+            times_successful=1,
+        )
+
+
+def test_a_behavior_that_met_the_edge_of_the_reach_makes_a_row_marked_truncated() -> None:
+    endings = [ExecutionStatus.TRUNCATED, DONE] * 4
+    robot = FakeRobot(FakeTable(), effect=lambda call: (0.0, 2.0), endings=endings)
+    for record, ending in zip(babbling(8, robot), endings, strict=True):
+        assert record.affordance is not None
+        assert record.affordance.truncated is (ending is ExecutionStatus.TRUNCATED)
+        assert record.affordance.exploratory == record.execution.call
+        assert record.execution.call in CALLS
+
+
+def test_the_tool_is_grasped_once_and_first_of_all() -> None:
+    """§5.1: "only one grasping behavior"; it takes a single grasp point."""
+    robot = FakeRobot(FakeTable())
+    babbling(20, robot)
+    assert robot.executed[0] == (BINDING, None)
+    assert [call.name for call in robot.calls].count(GRASP) == 1
+
+
+def test_a_robot_that_goes_on_does_not_grasp_again_and_counts_on() -> None:
+    robot = FakeRobot(FakeTable())
+    state = BabblingState(step=41, seen=observation(robot.table.attractor), grasped=True)
+    records = babbling(2, robot, state=state)
+    assert GRASP not in {call.name for call in robot.calls}
+    assert [record.step for record in records] == [42, 43]
+    assert state.step == 43
+
+
+def test_each_behavior_goes_with_a_position_wrist_before_it() -> None:
+    robot = FakeRobot(FakeTable())
+    records = babbling(10, robot)
+    done = [call for record in records for call in (record.placing.call, record.execution.call)]
+    assert robot.calls == [BINDING, *done]
+    assert {record.placing.call.name for record in records} == {POSITION_WRIST}
+
+
+def test_position_wrist_aims_by_the_latest_observation_and_o_s_is_taken_after_it() -> None:
+    """§3.2: O^s is the observation when the exploratory behavior begins, the wrist being there."""
+    robot = FakeRobot(FakeTable(), effect=scripted([(1.0, 0.0), (0.0, 0.0), (-2.0, 1.0)] * 4))
+    records = babbling(12, robot)
+    aimed_by = [seen for call, seen in robot.executed if call.name == POSITION_WRIST]
+    assert aimed_by[1:] == [record.end for record in records[:-1]]
+    tried_by = [seen for call, seen in robot.executed if call in CALLS]
+    assert tried_by == [record.start for record in records]
+    for record in records:
+        offset = record.start.wrist_to_object
+        assert offset.x == pytest.approx(record.placing.call["x"])
+        assert offset.y == pytest.approx(record.placing.call["y"])
+
+
+@settings(deadline=None)
+@given(st.integers(0, 2**32), st.floats(0.1, 20.0), st.floats(0.1, 20.0), st.floats(0.1, 20.0))
+def test_offsets_are_drawn_from_one_box_whatever_the_tool(
+    seed: int, width: float, low: float, height: float
+) -> None:
+    """§4, Fig. 4: the shape of the tool "is not required and used": one box serves all."""
+    box = replace(BOX, offset_x_max=width, offset_y_min=low, offset_y_max=low + height)
+    for record in babbling(5, seed=seed, box=box):
+        assert -width <= record.placing.call["x"] <= width
+        assert low <= record.placing.call["y"] <= low + height
+
+
+def test_offsets_fill_the_box_evenly() -> None:
+    """Kolmogorov-Smirnov: the largest gap between the distribution drawn and a uniform one is of
+    the order 1 / sqrt(n); 2.5 / sqrt(n) is exceeded in one of 100,000 honest runs."""
+    n = 2000
+    records = babbling(n, seed=7)
+    x = [(record.placing.call["x"] / BOX.offset_x_max + 1.0) / 2.0 for record in records]
+    height = BOX.offset_y_max - BOX.offset_y_min
+    y = [(record.placing.call["y"] - BOX.offset_y_min) / height for record in records]
+    for shares in (sorted(x), sorted(y)):
+        gap = max(abs(share - (k + 0.5) / n) for k, share in enumerate(shares))
+        assert gap < 2.5 / math.sqrt(n)
+    assert abs(float(np.corrcoef(x, y)[0, 1])) < 5.0 / math.sqrt(n)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_every_behavior_and_distance_is_chosen_about_equally_often(seed: int) -> None:
+    """§3.2: babbling "picks binding and exploratory behaviors at random": four behaviors, two
+    distances each. Chi-square of seven degrees of freedom exceeds 40 once in a million runs."""
+    n = 4000
+    drawn = Counter(record.execution.call for record in babbling(n, seed=seed))
+    assert set(drawn) == set(CALLS)
+    assert len(CALLS) == 8
+    even = n / len(CALLS)
+    assert sum((times - even) ** 2 / even for times in drawn.values()) < 40.0
+
+
+def test_the_behavior_chosen_does_not_depend_on_the_one_before() -> None:
+    """Chi-square of 49 degrees of freedom over pairs exceeds 120 once in ten million runs."""
+    calls = [record.execution.call for record in babbling(6400, seed=3)]
+    pairs = Counter(zip(calls[::2], calls[1::2], strict=True))
+    even = 3200 / 64
+    assert sum((pairs[a, b] - even) ** 2 / even for a in CALLS for b in CALLS) < 120.0
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.integers(0, 2**63 - 1))
+def test_the_same_seed_gives_the_same_records(seed: int) -> None:
+    assert babbling(10, seed=seed) == babbling(10, seed=seed)
+
+
+def test_other_seeds_give_other_choices() -> None:
+    runs = [choices(babbling(5, seed=seed)) for seed in range(20)]
+    assert all(a != b for k, a in enumerate(runs) for b in runs[:k])
+
+
+@pytest.mark.parametrize("blocked", [1, 2, 5])
+def test_when_the_tool_would_come_down_on_the_attractor_another_place_is_drawn(
+    blocked: int,
+) -> None:
+    robot = FakeRobot(FakeTable(), placings=[*[BLOCKED] * blocked, DONE, BLOCKED, DONE])
+    first, second, third = babbling(3, robot, box=MANY_DRAWS)
+    assert (first.redraws, second.redraws, third.redraws) == (blocked, 1, 0)
+    assert first.placing.status is DONE
+    names = [call.name for call in robot.calls[1 : blocked + 2]]
+    assert names == [POSITION_WRIST] * (blocked + 1)
+    tried = [call for call in robot.calls if call.name == POSITION_WRIST]
+    assert len(set(tried)) == len(tried)
+
+
+def test_places_out_of_the_arms_reach_are_drawn_again_without_going_there() -> None:
+    robot = FakeRobot(FakeTable(), reachable=lambda place: place.x > 3.0)
+    records = babbling(30, robot, box=MANY_DRAWS)
+    assert all(record.placing.wrist_end.x > 3.0 for record in records)
+    assert all(record.redraws == record.resets == 0 for record in records)
+
+
+def test_an_attractor_out_of_the_tools_reach_is_put_back_and_looked_at_again() -> None:
+    """§6: "If the attractor was pushed out of tool reach by the robot then the learning trial was
+    temporarily suspended while the attractor was manually placed in a new random position"."""
+    table = FakeTable(attractor=Point(0.0, 90.0))
+    robot = FakeRobot(table, effect=scripted([(0.0, 0.0), (0.0, 60.0), (0.0, 0.0)]))
+    back = [Point(2.0, 24.0), Point(-3.0, 22.0)]
+    experimenter = FakeExperimenter(table, lost=lambda place: place.y > 50.0, places=back)
+    records = babbling(4, robot, experimenter)
+    assert [record.resets for record in records] == [1, 0, 1, 0]
+    assert experimenter.put_back == 2
+    aimed_by = [seen for call, seen in robot.executed if call.name == POSITION_WRIST]
+    assert [seen.object_position for seen in aimed_by if seen] == [
+        back[0],
+        back[0],
+        back[1],
+        back[1],
+    ]
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.lists(places, min_size=1, max_size=10), st.integers(0, 99))
+def test_no_behavior_is_tried_on_an_attractor_out_of_reach(back: list[Point], seed: int) -> None:
+    """§6: the trial is suspended until the attractor is back."""
+    table = FakeTable(attractor=Point(90.0, 90.0))
+    robot = FakeRobot(table, effect=lambda call: (200.0, 0.0))
+    experimenter = FakeExperimenter(table, lost=lambda place: place.x > 50.0, places=back)
+    records = babbling(len(back), robot, experimenter, seed=seed)
+    assert [record.start.object_position for record in records] == back
+    assert all(record.resets == 1 for record in records)
+
+
+def test_when_all_draws_are_in_vain_the_attractor_is_put_back_as_if_out_of_reach() -> None:
+    table = FakeTable(attractor=Point(0.0, 24.0))
+    robot = FakeRobot(table, reachable=lambda place: place.x > 40.0)
+    far = Point(60.0, 24.0)
+    experimenter = FakeExperimenter(table, places=[Point(1.0, 24.0), far])
+    (record,) = babbling(1, robot, experimenter, box=MANY_DRAWS)
+    assert record.resets == 2
+    assert record.redraws == 0
+    assert record.start.object_position == far
+
+
+def test_a_tool_blocked_at_every_draw_puts_the_attractor_back_and_counts_every_redraw() -> None:
+    box = replace(BOX, draws=16)
+    table = FakeTable()
+    robot = FakeRobot(table, placings=[*[BLOCKED] * 17, DONE])
+    experimenter = FakeExperimenter(table, places=[Point(1.0, 22.0)])
+    (record,) = babbling(1, robot, experimenter, box=box)
+    assert (record.resets, record.redraws) == (1, 17)
+
+
+def test_the_records_carry_the_robots_clock() -> None:
+    """§6: "one hour of run time": the clock of a record is that at the end of its step."""
+    robot = FakeRobot(FakeTable(), placings=[DONE, BLOCKED, BLOCKED, DONE])
+    records = babbling(3, robot)
+    assert [record.clock for record in records] == [12.0, 28.0, 36.0]
+    assert robot.clock == records[-1].clock
+
+
+def test_babbling_has_no_end_of_its_own() -> None:
+    rng = np.random.default_rng(0)
+    table = FakeTable()
+    records = babble(
+        FakeRobot(table, effect=no_effect, placings=repeat(DONE)),
+        FakeSensor(table),
+        FakeExperimenter(table, lost=nowhere, places=(Point(0.0, k) for k in count())),
+        BINDING,
+        CALLS,
+        BOX,
+        rng,
+        BabblingState(),
+    )
+    last = next(islice(records, 2999, None))
+    assert last.step == 3000

@@ -1,0 +1,142 @@
+"""The true state of the table (world), and what sliding the tool does to the puck."""
+
+import math
+
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from affcli.config import Settings
+from affcli.core.geometry import Point, Pose
+from affcli.core.tool import PUCK_COLOR, TOOL_PARTS
+from affcli.lab.bench import tool_named
+from affcli.simulation.arm import reach_at
+from affcli.simulation.world import World
+from affcli.simulation.wrist_motion import GRID, trapezoid
+from tests.factories import goal_at
+
+SETTINGS = Settings()
+WORKSPACE = SETTINGS.workspace
+TOOLS = WORKSPACE.tools
+RADIUS = WORKSPACE.puck.radius
+tools = st.sampled_from(sorted(TOOL_PARTS))
+AHEAD = Point(0.0, 1.0)
+FIVE = trapezoid(5.0, WORKSPACE.motion.push_speed, WORKSPACE.motion.push_acceleration)
+
+
+def world_with(tool: str) -> World:
+    world = World(WORKSPACE, SETTINGS.physics)
+    world.tool = tool_named(SETTINGS, tool)
+    return world
+
+
+def in_front(world: World, gap: float = 0.5) -> Pose:
+    """Return where the puck lies straight ahead of the tool, `gap` from it."""
+    return Pose(0.25, world.wrist.y + TOOLS.handle_length + RADIUS + gap)
+
+
+def test_the_wrist_starts_where_the_arm_can_hold_a_tool_at_the_tables_centre() -> None:
+    """§7.1: "The tool was always placed in the center of the table"."""
+    world = World(WORKSPACE, SETTINGS.physics)
+    assert world.wrist == world.home
+    assert world.home.x == 0.0
+    assert world.home.y == pytest.approx(WORKSPACE.wrist_start.y, abs=GRID)
+    assert (world.home.y / GRID).is_integer()
+    arm = WORKSPACE.arm
+    for height in (arm.flange_height, arm.flange_height + arm.lift_height):
+        assert reach_at(arm, height).holds(world.home)
+
+
+def test_without_a_tool_on_the_table_nothing_can_be_asked_of_it() -> None:
+    world = World(WORKSPACE, SETTINGS.physics)
+    with pytest.raises(LookupError, match="no tool on the table"):
+        _ = world.tool
+    with pytest.raises(LookupError, match="lays one out first"):
+        _ = world.scene
+
+
+def test_the_scene_is_the_true_state_of_the_moment() -> None:
+    world = world_with("l-hook")
+    world.attractor, world.wrist = Pose(1.0, 20.0, 0.5), Point(-1.0, 11.0)
+    world.goal = goal_at(3.0, 15.0)
+    scene = world.scene
+    assert (scene.attractor, scene.wrist) == (Pose(1.0, 20.0, 0.5), Point(-1.0, 11.0))
+    assert (scene.tool, scene.goal) == (world.tool, world.goal)
+    assert scene.attractor_color == PUCK_COLOR
+    world.attractor = Pose(2.0, 20.0)
+    assert scene.attractor.x == 1.0
+    assert world.scene.attractor.x == 2.0
+
+
+@settings(deadline=None)
+@given(tools, st.floats(-12.0, 12.0), st.floats(-6.0, 24.0))
+def test_the_tool_comes_down_clear_when_it_would_not_overlap_the_puck(
+    tool: str, dx: float, dy: float
+) -> None:
+    world = world_with(tool)
+    wrist = world.wrist
+    world.attractor = Pose(wrist.x + dx, wrist.y + dy)
+    shape = shapely.union_all([shapely.Polygon(p.vertices) for p in world.tool.outlines])
+    gap = shape.distance(shapely.Point(dx, dy)) - RADIUS
+    if abs(gap) > 1e-9:
+        assert world.clear_of_attractor(wrist) is (gap > 0.0)
+
+
+def test_sliding_brings_the_wrist_to_the_end_and_the_puck_along() -> None:
+    world = world_with("t-stick")
+    world.attractor = before = in_front(world)
+    end = Point(world.wrist.x, world.wrist.y + 5.0)
+    world.slide(AHEAD, end, FIVE)
+    assert world.wrist == end
+    assert world.attractor.y - before.y == pytest.approx(4.5, abs=0.05)
+
+
+@settings(deadline=None, max_examples=40)
+@given(tools, st.floats(-15.0, 15.0), st.floats(0.1, 10.0))
+def test_a_puck_that_is_not_touched_is_not_moved(tool: str, x: float, gap: float) -> None:
+    """Untouched means unmoved, to the last bit."""
+    world = world_with(tool)
+    y = world.wrist.y + TOOLS.handle_length + 5.0 + RADIUS + gap
+    world.attractor = puck = Pose(x, y, 0.3)
+    world.slide(AHEAD, Point(world.wrist.x, world.wrist.y + 5.0), FIVE)
+    assert world.attractor == puck
+
+
+@settings(deadline=None, max_examples=40)
+@given(st.lists(st.tuples(tools, st.floats(-7.0, 7.0)), min_size=1, max_size=4))
+def test_a_world_used_before_gives_the_same_to_the_bit_as_a_fresh_one(
+    pushes: list[tuple[str, float]],
+) -> None:
+    """The same inputs give the same bits, whatever was pushed before and with which tool."""
+    shared = world_with("stick")
+    for tool, x in pushes:
+        fresh = world_with(tool)
+        shared.tool, shared.wrist = fresh.tool, fresh.wrist
+        fresh.attractor = shared.attractor = in_front(fresh)._replace(x=x)
+        for world in (shared, fresh):
+            world.slide(AHEAD, Point(world.wrist.x, world.wrist.y + 5.0), FIVE)
+        assert shared.attractor == fresh.attractor
+
+
+def test_paint_changes_nothing_of_what_a_tool_does() -> None:
+    """§7.2: a broken tool is another shape in the colour of the old one."""
+    plain, painted = world_with("l-hook"), world_with("l-hook")
+    painted.tool = painted.tool.painted(tool_named(SETTINGS, "t-hook").color)
+    for world in (plain, painted):
+        world.attractor = in_front(world)
+        world.slide(AHEAD, Point(world.wrist.x, world.wrist.y + 5.0), FIVE)
+    assert plain.attractor == painted.attractor
+
+
+def test_the_shape_held_decides_not_its_name() -> None:
+    """A T-hook's name on a stick's shape pushes like a stick: beside the handle it misses."""
+    world = world_with("stick")
+    x = TOOLS.part_width / 2.0 + RADIUS + 0.5
+    world.attractor = puck = in_front(world)._replace(x=x)
+    world.slide(AHEAD, Point(world.wrist.x, world.wrist.y + 5.0), FIVE)
+    assert world.attractor == puck
+    hooked = world_with("t-hook")
+    hooked.attractor = puck
+    hooked.slide(AHEAD, Point(hooked.wrist.x, hooked.wrist.y + 5.0), FIVE)
+    assert math.dist(hooked.attractor.point, puck.point) > 1.0

@@ -1,0 +1,359 @@
+"""Sessions, trials and steps; counters and steps hold together."""
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from affcli.core.trial import Counters, Outcome, Protocol, Survivors, TrialEnd, TrialRecord
+from affcli.errors import DatabaseError
+from affcli.store import Store, open_store, pack_robot, run_sql
+from affcli.store.query import Value
+from tests.factories import learning_spec
+from tests.store.records import (
+    NOW,
+    SETTINGS,
+    VERSIONS,
+    counted,
+    learned,
+    robot_record,
+    trial_record,
+    trial_spec,
+    trial_step,
+)
+
+LATER = "2026-01-02T04:04:05+00:00"
+STORED = Counters.STORED
+
+
+def value(store: Store, query: str) -> Value:
+    """Return the one value of a query."""
+    ((only,),) = run_sql(store.path, query).rows
+    return only
+
+
+def counters_of(store: Store) -> list[tuple[Value, ...]]:
+    """Return the counters of all rows by age."""
+    return list(
+        run_sql(store.path, "select times_used, times_successful from affordance order by id").rows
+    )
+
+
+def begin_solving(store: Store) -> int:
+    return store.begin_session("solve", 0, 1, SETTINGS, VERSIONS, NOW)
+
+
+def test_sessions_are_begun_found_and_finished(store: Store) -> None:
+    first, second = begin_solving(store), begin_solving(store)
+    assert first != second
+    other = store.begin_session("break-tool", 0, 1, SETTINGS, VERSIONS, NOW)
+    assert [s.id for s in store.sessions()] == [first, second, other]
+    assert [s.id for s in store.sessions("solve")] == [first, second]
+    found = store.find_session("solve", 0, 1, SETTINGS)
+    assert found is not None
+    assert (found.id, found.status, found.finished_at) == (second, "running", None)
+    assert (found.versions, found.settings, found.started_at) == (VERSIONS, SETTINGS, NOW)
+    store.finish_session(second, LATER)
+    store.finish_session(second, "2027")
+    found = store.find_session("solve", 0, 1, SETTINGS)
+    assert found is not None
+    assert (found.status, found.finished_at) == ("done", LATER)
+    assert store.find_session("solve", 1, 1, SETTINGS) is None
+    assert store.find_session("solve", 0, 1, "{}") is None
+
+
+def test_a_reproduction_begun_again_is_the_same_session(store: Store) -> None:
+    first = store.begin_session("reproduce", 7, 200, SETTINGS, VERSIONS, NOW)
+    assert store.begin_session("reproduce", 7, 200, SETTINGS, VERSIONS, LATER) == first
+    assert store.begin_session("reproduce", 7, 201, SETTINGS, VERSIONS, LATER) != first
+    assert store.begin_session("reproduce", 8, 200, SETTINGS, VERSIONS, LATER) != first
+
+
+def test_a_step_and_the_counters_it_changes_are_saved_together(store: Store) -> None:
+    run = learned(store, 9)
+    table, ids = store.affordance_table(run.id)
+    spec = trial_spec(counters=STORED)
+    trial = store.begin_trial(begin_solving(store), run.id, spec)
+    row = table.row(1)
+    step = trial_step(row)
+    store.save_step(trial, spec, step.record, step.truth, ids[row.step])
+    assert counters_of(store) == [(1, 1), (2, 2), (1, 1)]
+    failed = trial_step(counted(row, step.record), 2, seen=(0.0, 0.0))
+    store.save_step(trial, spec, failed.record, failed.truth, ids[row.step])
+    assert counters_of(store) == [(1, 1), (3, 2), (1, 1)]
+    assert list(store.affordance_table(run.id)[0])[1].times_used == 3
+    assert [(s.times_used_after, s.times_successful_after) for s in store.trial_steps(trial)] == [
+        (2, 2),
+        (3, 2),
+    ]
+
+
+def test_a_trial_from_the_table_as_learned_leaves_the_stored_counters(store: Store) -> None:
+    run = learned(store, 9)
+    table, ids = store.affordance_table(run.id)
+    session = begin_solving(store)
+    spec = trial_spec()
+    trial = store.begin_trial(session, run.id, spec)
+    step = trial_step(table.row(0))
+    store.save_step(trial, spec, step.record, step.truth, ids[3])
+    store.save_trials(session, run.id, [trial_record(trial_spec(3), list(table))], ids)
+    assert counters_of(store) == [(1, 1)] * 3
+
+
+def test_counters_that_another_process_changed_stop_the_trial(store: Store) -> None:
+    run = learned(store, 9)
+    table, ids = store.affordance_table(run.id)
+    spec = trial_spec(counters=STORED)
+    trial = store.begin_trial(begin_solving(store), run.id, spec)
+    step = trial_step(table.row(0))
+    with open_store(store.path, create=False, write=True) as other:
+        other_trial = other.begin_trial(begin_solving(other), run.id, spec)
+        other.save_step(other_trial, spec, step.record, step.truth, ids[3])
+    with pytest.raises(DatabaseError, match="another process changed the counters of affordance 1"):
+        store.save_step(trial, spec, step.record, step.truth, ids[3])
+    assert store.trial_steps(trial) == ()
+    assert counters_of(store) == [(2, 2), (1, 1), (1, 1)]
+
+
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=25
+)
+@given(st.lists(st.tuples(st.integers(0, 2), st.booleans(), st.sampled_from(Counters)), max_size=8))
+def test_counters_and_steps_hold_together(
+    store: Store, uses: list[tuple[int, bool, Counters]]
+) -> None:
+    """A stored counter is 1 plus what the steps of trials with stored counters add to it."""
+    runs = store.learning_runs()
+    run = runs[0] if runs else learned(store, 9)
+    _, ids = store.affordance_table(run.id)
+    for position, success, counters in uses:
+        table, _ = store.affordance_table(run.id, as_learned=counters is Counters.AS_LEARNED)
+        spec = trial_spec(counters=counters)
+        trial = store.begin_trial(begin_solving(store), run.id, spec)
+        row = table.row(position)
+        step = trial_step(row, seen=(0.0, 4.0) if success else (0.0, 0.0))
+        store.save_step(trial, spec, step.record, step.truth, ids[row.step])
+    assert (
+        value(
+            store,
+            """
+        select count(*) from affordance a where (times_used, times_successful) <> (
+            select 1 + count(*), 1 + coalesce(sum(replicated), 0)
+            from step join trial t on t.id = trial_id
+            where affordance_id = a.id and t.counters = 'stored')
+        """,
+        )
+        == 0
+    )
+
+
+def test_a_trial_keeps_how_it_ended(store: Store) -> None:
+    run = learned(store)
+    trial = store.begin_trial(begin_solving(store), run.id, trial_spec())
+    assert store.outcomes() == ()  # it has not ended
+    store.end_trial(trial, TrialEnd(Outcome.NO_ROW, 3, 41.5, Survivors(9, 2, 0, 0)))
+    (result,) = store.outcomes()
+    assert (result.outcome, result.steps, result.robot_seconds) == (Outcome.NO_ROW, 3, 41.5)
+    assert run_sql(
+        store.path,
+        "select last_rows_consistent, last_rows_probable, last_rows_reachable, last_rows_nearest"
+        " from trial",
+    ).rows == ((9, 2, 0, 0),)
+
+
+def test_every_step_is_kept_with_the_row_it_tried(store: Store) -> None:
+    run = learned(store, 9)
+    table, ids = store.affordance_table(run.id)
+    row = replace(table.row(2), times_used=4, times_successful=3)
+    steps = (
+        trial_step(row, 1, seen=(1.0, 3.0)),
+        trial_step(row, 2, blocked=True, lost=True),
+        trial_step(row, 3, seen=(0.0, -4.0), lost=False),
+    )
+    end = TrialEnd(Outcome.STEP_LIMIT, 3, 20.0)
+    session = begin_solving(store)
+    store.save_trials(session, run.id, [TrialRecord(trial_spec(), steps, end)], ids)
+    (result,) = store.outcomes(session_id=session)
+    stored = store.trial_steps(result.id)
+    assert [s.row for s in stored] == [row] * 3
+    for kept, (record, _, lost) in zip(stored, steps, strict=True):
+        assert (kept.number, kept.clock, kept.survivors) == (
+            *(record.number, record.clock),
+            record.survivors,
+        )
+        assert (kept.affordance_id, kept.replicated, kept.died) == (
+            *(ids[row.step], record.replicated),
+            record.died,
+        )
+        assert (kept.expected, kept.seen, kept.seen_distance) == (
+            *(record.expected, record.seen),
+            record.seen.distance,
+        )
+        assert (kept.seen_start, kept.seen_end) == (
+            record.start.object_position,
+            record.end.object_position,
+        )
+        assert (kept.times_used_after, kept.times_successful_after) == (
+            record.times_used_after,
+            record.times_successful_after,
+        )
+        assert kept.lost is lost
+    assert [(s.placing_status, s.status) for s in stored] == [
+        ("done", "done"),
+        ("blocked", None),
+        ("done", "done"),
+    ]
+    truths = run_sql(
+        store.path, "select true_start_x, true_start_y, true_end_x, true_end_y from step"
+    )
+    assert truths.rows == ((3.0, 25.1, 3.1, 29.2),) * 3
+
+
+def test_the_same_trial_is_not_stored_twice_in_a_session(store: Store) -> None:
+    run = learned(store)
+    session = begin_solving(store)
+    store.begin_trial(session, run.id, trial_spec())
+    with pytest.raises(Exception, match="UNIQUE constraint failed: trial"):
+        store.begin_trial(session, run.id, trial_spec())
+    store.begin_trial(begin_solving(store), run.id, trial_spec())
+
+
+def begin_reproducing(store: Store, robots: int = 2) -> int:
+    return store.begin_session("reproduce", 0, robots, SETTINGS, VERSIONS, NOW)
+
+
+def test_a_robot_is_saved_once_and_whole(store: Store) -> None:
+    session = begin_reproducing(store)
+    assert store.saved_robots(session) == frozenset()
+    assert store.save_robot(session, robot_record(1), VERSIONS, NOW)
+    assert not store.save_robot(session, robot_record(1), VERSIONS, LATER)
+    assert store.save_robot(session, robot_record(0), VERSIONS, NOW)
+    assert store.saved_robots(session) == {0, 1}
+    runs = store.learning_runs(session_id=session)
+    assert [(r.spec.tool, r.spec.robot, r.behaviors, r.rows) for r in runs] == [
+        ("stick", 1, 6, 2),
+        ("t-hook", 1, 6, 2),
+        ("stick", 0, 6, 2),
+        ("t-hook", 0, 6, 2),
+    ]
+    assert {(r.status, r.robot_seconds, r.resets, r.checkpoint) for r in runs} == {
+        ("done", 31.5, 3, None)
+    }
+    assert value(store, "select count(*) from trial") == 10
+    assert value(store, "select count(*) from step") == 16
+    assert store.learning_runs() == ()
+
+
+def test_a_robot_of_another_session_is_another_robot(store: Store) -> None:
+    first, second = begin_reproducing(store, 2), begin_reproducing(store, 3)
+    assert store.save_robot(first, robot_record(0), VERSIONS, NOW)
+    assert store.save_robot(second, robot_record(0), VERSIONS, NOW)
+    alone = learned(store, spec=learning_spec("stick", behaviors=6))
+    assert alone.session_id is None
+
+
+def everything(store: Store) -> list[tuple[tuple[Value, ...], ...]]:
+    """Return all rows of all tables."""
+    tables = ("session", "learning_run", "behavior", "affordance", "trial", "step")
+    return [run_sql(store.path, f"select * from {table}").rows for table in tables]
+
+
+def test_a_packed_robot_is_saved_as_the_robot_itself(store: Store, empty_database: object) -> None:
+    session = begin_reproducing(store)
+    store.save_robot(session, robot_record(0), VERSIONS, NOW)
+    plain = everything(store)
+    with store.writing() as connection:
+        for table in ("step", "trial", "affordance", "behavior", "learning_run"):
+            connection.exec_driver_sql(f"DELETE FROM {table}")
+    store.save_robot(session, pack_robot(robot_record(0)), VERSIONS, NOW)
+    assert everything(store) == plain
+
+
+def test_a_robot_is_saved_whole_or_not_at_all(store: Store) -> None:
+    session = begin_reproducing(store)
+    record = robot_record(0)
+    torn = replace(record, trials=(*record.trials, record.trials[-1]))
+    with pytest.raises(Exception, match="UNIQUE constraint failed"):
+        store.save_robot(session, torn, VERSIONS, NOW)
+    assert store.saved_robots(session) == frozenset()
+    assert [len(rows) for rows in everything(store)] == [1, 0, 0, 0, 0, 0]
+
+
+def test_sums_for_reports(store: Store) -> None:
+    session = begin_reproducing(store)
+    for robot in range(2):
+        store.save_robot(session, robot_record(robot), VERSIONS, NOW)
+    whole, broken = Protocol.EXTENSION_OF_REACH, Protocol.TOOL_ADAPTATION
+    assert [
+        (c.robot, c.protocol, c.tool, c.shape, c.goal, c.trials, c.solved)
+        for c in store.success_counts(session)
+    ] == [
+        (robot, *cell)
+        for robot in range(2)
+        for cell in (
+            (whole, "stick", "stick", 1, 2, 1),
+            (whole, "t-hook", "t-hook", 1, 2, 1),
+            (broken, "t-hook", "l-hook", 1, 1, 1),
+        )
+    ]
+    assert [(c.protocol, c.outcome, c.trials) for c in store.outcome_counts([session])] == [
+        (whole, Outcome.NO_ROW, 4),
+        (whole, Outcome.SOLVED, 4),
+        (broken, Outcome.SOLVED, 2),
+    ]
+    assert store.outcome_counts([]) == ()
+    uses = [
+        (u.robot, u.step, u.lost, u.trials, u.tries, u.successes, u.deaths)
+        for u in store.row_uses(session)
+    ]
+    assert uses == [
+        use
+        for robot in range(2)
+        for use in ((robot, 3, True, 1, 1, 0, 1), (robot, 6, False, 1, 1, 1, 0))
+    ]
+    assert store.row_uses(session)[0].offset == (0.5, 14.0)
+    assert [u.tries for u in store.row_uses(session, whole)] == [2, 1] * 4
+
+
+def test_invalid_trials_count_for_nothing(store: Store) -> None:
+    run = learned(store)
+    _, ids = store.affordance_table(run.id)
+    session = begin_solving(store)
+    ended = [
+        trial_record(trial_spec(1, start), (), outcome)
+        for start, outcome in enumerate((Outcome.SOLVED, Outcome.INVALID, Outcome.NO_ROW), 1)
+    ]
+    store.save_trials(session, run.id, ended, ids)
+    store.begin_trial(session, run.id, trial_spec(1, 4))
+    (count,) = store.success_counts(session)
+    assert (count.trials, count.solved) == (2, 1)
+    assert len(store.outcomes()) == 3
+
+
+def test_outcomes_can_be_narrowed(store: Store) -> None:
+    runs = {
+        tool: learned(store, spec=learning_spec(tool, behaviors=9)) for tool in ("stick", "t-hook")
+    }
+    solving = begin_solving(store)
+    breaking = store.begin_session("break-tool", 0, 1, SETTINGS, VERSIONS, NOW)
+    for session in (solving, breaking):
+        for tool, run in runs.items():
+            store.save_trials(session, run.id, [trial_record(trial_spec(tool=tool), ())], {})
+    assert len(store.outcomes()) == 4
+    assert {r.session_kind for r in store.outcomes(kind="solve")} == {"solve"}
+    assert {r.tool for r in store.outcomes(tool="stick")} == {"stick"}
+    (one,) = store.outcomes(session_id=breaking, tool="t-hook")
+    assert (one.session_kind, one.run_id, one.protocol) == (
+        *("break-tool", runs["t-hook"].id),
+        Protocol.EXTENSION_OF_REACH,
+    )
+
+
+def test_behavior_groups_count_tries_and_rows(store: Store) -> None:
+    run = learned(store, 9)
+    (group,) = store.behavior_groups(run.id)
+    assert (str(group.call), group.tried, group.rows) == ("extend arm 5", 9, 3)
+    assert (group.mean_movement, group.mean_dx, group.mean_dy) == (4.0, 0.0, 4.0)
+    empty = store.begin_learning(learning_spec(seed=9), VERSIONS, NOW)
+    assert store.behavior_groups(empty.id) == ()
