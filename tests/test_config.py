@@ -313,7 +313,7 @@ def outcome(mapping: dict[str, Any]) -> Settings | BadInputError:
         return error
 
 
-@hypothesis_settings(deadline=None, max_examples=300)
+@hypothesis_settings(deadline=None, max_examples=200)
 @given(keys, json_values)
 def test_any_value_is_either_taken_as_it_is_or_refused(key: tuple[str, str], value: Any) -> None:
     section, name = key

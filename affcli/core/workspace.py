@@ -29,7 +29,7 @@ class ArmGeometry:
     flange_height: float = 1.05
     """Flange over the table while the tool slides on it. Choice: a flat gripper on the handle."""
     lift_height: float = 1.6
-    """How far the tool is lifted to be positioned. Choice: well over the puck, which is 1 in high."""
+    """How far the tool is lifted to be positioned. Choice: well over the puck, 1 in high."""
     elbow_max_degrees: float = 146.0
     """Largest bend of the elbow (0 is straight). Choice: it sets how near the wrist can come."""
     shoulder_min_degrees: float = -20.0

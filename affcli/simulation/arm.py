@@ -23,8 +23,8 @@ class JointAngles:
     """The five joint angles (rad).
 
     waist: 0 straight ahead (+y), positive to the robot's left. shoulder: direction of the upper
-    arm over the horizontal. elbow: bend of the forearm below the upper arm's direction. pitch: turn of
-    the hand from the forearm's direction, positive downward. roll: about the vertical hand.
+    arm over the horizontal. elbow: bend of the forearm below the upper arm's direction. pitch: turn
+    of the hand from the forearm's direction, positive downward. roll: about the vertical hand.
     """
 
     waist: float
@@ -36,7 +36,7 @@ class JointAngles:
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """The wrist positions the arm can hold at one height: part of a ring about the shoulder (in)."""
+    """The wrist positions the arm can hold at one height: part of a ring (in)."""
 
     inner: float
     outer: float

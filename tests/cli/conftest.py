@@ -9,19 +9,24 @@ import pytest
 from affcli.store import open_store
 from tests.cli.program import done, warm
 
-LEISURELY = """\
-[motion]
-hold = 25.0
-[trial]
-max_steps = 5
-"""
-"""The robot stands still for so long that an hour holds some seventy behaviors; trials end soon."""
+IMPATIENT = "[trial]\nmax_steps = 6\n"
+"""Trials are given up soon."""
+LEISURELY = f"[motion]\nhold = 25.0\n{IMPATIENT}"
+"""The robot stands still for so long, too, that an hour holds some seventy behaviors."""
 
 
 @pytest.fixture(scope="session", autouse=True)
 def _warm_program() -> Iterator[None]:
     yield
     warm().stop()
+
+
+@pytest.fixture(scope="session")
+def impatient(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Settings with which trials are short: every step is saved by itself, which takes time."""
+    path = tmp_path_factory.mktemp("settings") / "impatient.toml"
+    path.write_text(IMPATIENT)
+    return path
 
 
 @pytest.fixture(scope="session")
@@ -41,9 +46,10 @@ def _empty(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def _learned(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def _learned(impatient: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("cli") / "learned.db"
-    done("learn", "--tool", "t-hook", "--tool", "stick", "--behaviors", "800", "--db", path)
+    tools = ("--tool", "t-hook", "--tool", "stick", "--behaviors", "800")
+    done("learn", *tools, "--config", impatient, "--db", path)
     return path
 
 
@@ -58,7 +64,7 @@ def _used(_learned: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def _reproduced(leisurely: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("cli") / "reproduced.db"
-    done("reproduce", "--robots", "3", "--workers", "1", "--config", leisurely, "--db", path)
+    done("reproduce", "--robots", "2", "--workers", "1", "--config", leisurely, "--db", path)
     return path
 
 
@@ -82,5 +88,5 @@ def used(_used: Path, tmp_path: Path) -> Path:
 
 @pytest.fixture
 def reproduced(_reproduced: Path, tmp_path: Path) -> Path:
-    """A database with a reproduction of three leisurely robots, for this test alone."""
+    """A database with a reproduction of two leisurely robots, for this test alone."""
     return Path(shutil.copy(_reproduced, tmp_path / "reproduced.db"))

@@ -66,10 +66,13 @@ class Warm:
             start_new_session=True,
         )
 
-    def run(self, args: list[str], cwd: Path, env: dict[str, str]) -> Ended:
-        """Run one command to its end."""
-        out, err = (Path(self.folder.name) / name for name in ("out", "err"))
-        request = {"args": args, "cwd": str(cwd), "env": env, "out": str(out), "err": str(err)}
+    def run(
+        self, args: list[str], cwd: Path, env: dict[str, str], copies: int = 1
+    ) -> list[Ended]:
+        """Run a command, or several copies of it side by side, to its end."""
+        out, err = (f"{self.folder.name}/{name}" for name in ("out", "err"))
+        request = {"args": args, "cwd": str(cwd), "env": env, "copies": copies}
+        request |= {"out": out, "err": err}
         asked, told = self.process.stdin, self.process.stdout
         assert asked is not None
         assert told is not None
@@ -78,9 +81,12 @@ class Warm:
         ready, _, _ = select.select([told], [], [], PATIENCE)
         if not ready:
             self.stop()
-        assert ready, f"{args} hangs: {err.read_text()}"
-        code = int(told.readline())
-        return Ended(code, out.read_text(), err.read_text())
+        assert ready, f"{args} hangs"
+        codes = json.loads(told.readline())
+        return [
+            Ended(code, Path(f"{out}{copy}").read_text(), Path(f"{err}{copy}").read_text())
+            for copy, code in enumerate(codes)
+        ]
 
     def stop(self) -> None:
         """End it, and a command that hangs with it."""
@@ -98,10 +104,17 @@ def warm() -> Warm:
 
 def affcli(*args: Arg, cwd: Path | None = None, **env: str) -> Ended:
     """Run the program to its end; whatever happens it must not show a traceback."""
+    (ended,) = side_by_side(1, *args, cwd=cwd, **env)
+    return ended
+
+
+def side_by_side(copies: int, *args: Arg, cwd: Path | None = None, **env: str) -> list[Ended]:
+    """Run copies of the same command at once, each to its end."""
     # As Python reads a command line: what is no character becomes a lone surrogate.
     as_text = [os.fsdecode(arg) for arg in args]
-    ended = warm().run(as_text, cwd or Path.cwd(), environment(**env))
-    assert "Traceback" not in ended.err, ended.err
+    ended = warm().run(as_text, cwd or Path.cwd(), environment(**env), copies)
+    for one in ended:
+        assert "Traceback" not in one.err, one.err
     return ended
 
 

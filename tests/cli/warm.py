@@ -4,8 +4,8 @@ Each command is a process of its own, with its own arguments, folder, environmen
 starting Python, importing and cleaning up, which would take most of the tests' time, is left out.
 What is about these is tested without this.
 
-A request is a line of JSON on stdin: args, cwd, env, and the files that stdout and stderr go to.
-The answer is a line with the exit code.
+A request is a line of JSON on stdin: args, cwd, env, the files that stdout and stderr go to, and how
+many copies to run side by side. The answer is a line with their exit codes.
 """
 
 import gc
@@ -85,13 +85,17 @@ def run(request: dict[str, Any]) -> NoReturn:
 
 
 def serve() -> None:
-    """Fork for every request."""
+    """Fork for every request, as often as it says."""
     for line in sys.stdin:
-        child = os.fork()
-        if child == 0:
-            run(json.loads(line))
-        _, status = os.waitpid(child, 0)
-        sys.stdout.write(f"{os.waitstatus_to_exitcode(status)}\n")
+        request = json.loads(line)
+        children = []
+        for copy in range(request["copies"]):
+            children.append(os.fork())
+            if children[-1] == 0:
+                files = {name: f"{request[name]}{copy}" for name in ("out", "err")}
+                run({**request, **files})
+        codes = [os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) for child in children]
+        sys.stdout.write(json.dumps(codes) + "\n")
         sys.stdout.flush()
 
 

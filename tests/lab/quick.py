@@ -12,8 +12,8 @@ from affcli.lab.learning import LearningRun
 NOW = "2026-01-02T03:04:05+00:00"
 Steps = tuple[tuple[BabblingRecord, Truth], ...]
 
-LEISURELY = settings_with({"motion": {"hold": 25.0}, "trial": {"max_steps": 4}}, "a test")
-"""Standing still for so long after every move that an hour holds about seventy behaviors."""
+LEISURELY = settings_with({"motion": {"hold": 40.0}, "trial": {"max_steps": 4}}, "a test")
+"""Standing still for so long after every move that an hour holds some forty behaviors."""
 IMPATIENT = settings_with({"trial": {"max_steps": 6}}, "a test")
 """Trials are given up soon."""
 EXACT = settings_with({"sensor": {"position_noise": 0, "color_noise": 0}}, "a test")

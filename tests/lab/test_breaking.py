@@ -15,7 +15,7 @@ WHOLE, BROKEN = Protocol.EXTENSION_OF_REACH, Protocol.TOOL_ADAPTATION
 @pytest.fixture
 def run(store: Store) -> LearningRunInfo:
     """A T-hook's learning run, in the store."""
-    return learn(store, spec_of("t-hook", 400, settings=IMPATIENT), now).info
+    return learn(store, spec_of("t-hook", 250, settings=IMPATIENT), now).info
 
 
 def broken(store: Store, run: LearningRunInfo) -> list[TrialRecord]:

@@ -53,7 +53,7 @@ def tried(shape: str, goal: int, start: int, of: Settings = SETTINGS) -> TrialRe
     return whole_trial(spec(shape, goal, start), of, t_hook_table(of), fresh_world(of))
 
 
-@settings(deadline=None, max_examples=12)
+@settings(deadline=None, max_examples=8)
 @given(st.lists(st.tuples(shapes, goals, starts), min_size=1, max_size=4))
 def test_a_world_shared_between_trials_gives_the_same_trials_as_fresh_ones(
     trials: list[tuple[str, int, int]],
@@ -63,7 +63,7 @@ def test_a_world_shared_between_trials_gives_the_same_trials_as_fresh_ones(
         assert whole_trial(spec(*trial), SETTINGS, table, shared) == tried(*trial)
 
 
-@settings(deadline=None, max_examples=15)
+@settings(deadline=None, max_examples=10)
 @given(shapes, goals, starts)
 def test_a_trial_leaves_the_table_as_learned(shape: str, goal: int, start: int) -> None:
     """§7.2: "In each of these experiments the robot started the testing trial with the original
@@ -75,7 +75,7 @@ def test_a_trial_leaves_the_table_as_learned(shape: str, goal: int, start: int) 
     assert all((row.times_used, row.times_successful) == (1, 1) for row in table)
 
 
-@settings(deadline=None, max_examples=15)
+@settings(deadline=None, max_examples=10)
 @given(shapes, goals, starts)
 def test_the_counters_of_a_table_that_a_trial_may_change_are_those_of_its_steps(
     shape: str, goal: int, start: int
@@ -100,7 +100,7 @@ def test_another_seed_sees_with_other_noise() -> None:
     assert one.steps[0].record.start != other.steps[0].record.start
 
 
-@settings(deadline=None, max_examples=16)
+@settings(deadline=None, max_examples=12)
 @given(shapes, goals, starts)
 def test_a_trial_begins_at_its_start_and_only_the_robot_moves_the_attractor(
     shape: str, goal: int, start: int
@@ -117,7 +117,7 @@ def test_a_trial_begins_at_its_start_and_only_the_robot_moves_the_attractor(
             assert step.truth.start == step.truth.end
 
 
-@settings(deadline=None, max_examples=16)
+@settings(deadline=None, max_examples=12)
 @given(goals, starts)
 def test_without_noise_a_trial_is_solved_if_and_only_if_the_attractor_lies_over_the_goal(
     goal: int, start: int

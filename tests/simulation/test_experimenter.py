@@ -1,6 +1,7 @@
 """The person of §6: lays out runs and trials, and puts the attractor back."""
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -50,6 +51,7 @@ def assert_attractor_can_be_played_with(bench: Bench) -> None:
     assert float(shapely.distance(shape, offsets).min()) < RADIUS
 
 
+@cache
 def wrists_on_a_fine_grid() -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
     """Return wrist positions (n, 2) about a third of an inch apart, all over the reach."""
     radii = np.linspace(REACH.inner, REACH.outer, 45)
@@ -58,7 +60,7 @@ def wrists_on_a_fine_grid() -> np.ndarray[tuple[int, int], np.dtype[np.float64]]
     return np.stack([-r * np.sin(b), r * np.cos(b)], axis=1)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=30)
 @given(tools, some_seeds)
 def test_a_learning_run_begins_with_tool_and_attractor_at_random_places(
     tool: str, seed: int
@@ -75,7 +77,7 @@ def test_a_learning_run_begins_with_tool_and_attractor_at_random_places(
     assert_attractor_can_be_played_with(bench)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=30)
 @given(tools, some_seeds)
 def test_the_attractor_is_put_back_on_the_table_within_reach_and_off_the_tool(
     tool: str, seed: int

@@ -100,7 +100,7 @@ def test_so_it_is_all_over_the_place_on_both_sides(reach: Reach) -> None:
             assert_answer_is_exact(name, reach, at, RADIUS)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=40)
 @given(names, reaches, attractors())
 def test_the_answer_is_that_of_trying_wrist_positions_all_over_the_reach(
     name: str, reach: Reach, at: Point

@@ -36,16 +36,23 @@ def in_front(world: World, gap: float = 0.5) -> Pose:
     return Pose(0.25, world.wrist.y + TOOLS.handle_length + RADIUS + gap)
 
 
-def test_the_wrist_starts_where_the_arm_can_hold_a_tool_at_the_tables_centre() -> None:
+@pytest.mark.parametrize("tool", sorted(TOOL_PARTS))
+def test_the_wrist_starts_where_it_holds_a_tool_that_lies_at_the_tables_centre(tool: str) -> None:
     """§7.1: "The tool was always placed in the center of the table"."""
-    world = World(WORKSPACE, SETTINGS.physics)
+    world = world_with(tool)
     assert world.wrist == world.home
-    assert world.home.x == 0.0
-    assert world.home.y == pytest.approx(WORKSPACE.wrist_start.y, abs=GRID)
-    assert (world.home.y / GRID).is_integer()
-    arm = WORKSPACE.arm
+    assert all((c / GRID).is_integer() for c in world.home)
+    handle = world.tool.parts[0].outline
+    left, near, right, far = handle.moved(*world.home).bounds
+    table = WORKSPACE.table
+    assert 0.5 * (left + right) == pytest.approx(0.0, abs=GRID)
+    assert 0.5 * (near + far) == pytest.approx(0.5 * (table.near + table.far), abs=GRID)
+
+
+def test_at_the_beginning_the_arm_can_hold_the_tool_lifted_and_on_the_table() -> None:
+    arm, home = WORKSPACE.arm, World(WORKSPACE, SETTINGS.physics).home
     for height in (arm.flange_height, arm.flange_height + arm.lift_height):
-        assert reach_at(arm, height).holds(world.home)
+        assert reach_at(arm, height).holds(home)
 
 
 def test_without_a_tool_on_the_table_nothing_can_be_asked_of_it() -> None:

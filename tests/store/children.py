@@ -60,21 +60,19 @@ def wait_for_lock(path: Path) -> None:
 
 def append_in_chunks(path: Path) -> None:
     """Compute a long run in small chunks, going on from what is stored if another was faster."""
-    from tests.factories import learning_spec
-    from tests.store.records import NOW, VERSIONS, learning_steps
+    from tests.store.records import LONG_RUN, NOW, VERSIONS, learning_steps
 
-    spec = learning_spec(behaviors=120)
     with open_store(path, create=False, write=True) as store:
         ready()
         sys.stdin.readline()
-        info = store.begin_learning(spec, VERSIONS, NOW)
+        info = store.begin_learning(LONG_RUN, VERSIONS, NOW)
         while info.status != "done":
             at = info.behaviors
             steps = learning_steps(4, first=at + 1)
             checkpoint = {"step": at + 4}
             done = at + 4 == 120
             store.append_learning(info.id, at, steps, checkpoint, at, done=done, now=NOW)
-            info = store.begin_learning(spec, VERSIONS, NOW)
+            info = store.begin_learning(LONG_RUN, VERSIONS, NOW)
 
 
 def die_while_writing(path: Path) -> None:

@@ -31,6 +31,8 @@ from tests.factories import BINDING, EXTEND_5, learning_spec, observation
 NOW = "2026-01-02T03:04:05+00:00"
 VERSIONS = {"affcli": "0", "python": "3"}
 SETTINGS = learning_spec().settings
+LONG_RUN = LearningSpec("t-hook", seed=0, robot=0, hours=None, behaviors=120, settings="{}")
+"""A run that several processes compute at once."""
 
 
 def learning_step(

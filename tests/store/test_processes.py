@@ -12,9 +12,8 @@ import pytest
 
 from affcli.errors import DatabaseError
 from affcli.store import database_info, open_store, run_sql
-from tests.factories import learning_spec
 from tests.store.processes import child, finished
-from tests.store.records import NOW, VERSIONS, learned, learning_steps
+from tests.store.records import LONG_RUN, NOW, VERSIONS, learned, learning_steps
 
 
 def integrity(path: Path) -> str:
@@ -122,7 +121,7 @@ def test_two_processes_may_compute_the_same_run(database: Path) -> None:
         ends = [(one.communicate(timeout=60)[1], one.returncode) for one in both]
     assert ends == [("", 0)] * 2
     with open_store(database, create=False, write=True) as store:
-        run = store.begin_learning(learning_spec(behaviors=120), VERSIONS, NOW)
+        run = store.begin_learning(LONG_RUN, VERSIONS, NOW)
         table, _ = store.affordance_table(run.id)
     rows = [r.affordance for r, _ in learning_steps(120) if r.affordance is not None]
     assert list(table) == rows

@@ -1,0 +1,117 @@
+"""Stopped by ctrl-C, by SIGTERM, or killed; and gone on with (faults 1 to 3)."""
+
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.cli.program import Ended, contents, done, ending, rows, started, wait_until
+
+LONG = ("learn", "--tool", "stick", "--behaviors", "4500")
+GOES_ON = "affcli: stopped; what was saved is kept, and the same command goes on from there\n"
+SOON = 10.0
+"""Seconds: five times what a person is promised."""
+
+
+def saved(database: Path) -> int:
+    """Return how many behaviors of a run are saved."""
+    if not database.exists() or not rows(database, "SELECT 1 FROM sqlite_master LIMIT 1"):
+        return 0
+    return sum(count for (count,) in rows(database, "SELECT behaviors FROM learning_run"))
+
+
+def stopped(process: subprocess.Popen[str], signum: int) -> Ended:
+    """Send a signal; the process must end soon."""
+    process.send_signal(signum)
+    began = time.monotonic()
+    ended = ending(process, SOON)
+    assert time.monotonic() - began < SOON
+    return ended
+
+
+def test_learning_goes_on_after_whatever_stopped_it(tmp_path: Path) -> None:
+    """Interrupted, terminated and killed in turn, the run ends as if nothing had happened."""
+    database, alone = tmp_path / "my.db", tmp_path / "alone.db"
+    kept = 0
+    for signum, code, says in (
+        (signal.SIGINT, 130, GOES_ON),
+        (signal.SIGTERM, 143, GOES_ON),
+        (signal.SIGKILL, -signal.SIGKILL, ""),
+    ):
+        process = started(*LONG, "--db", database)
+        wait_until(lambda before=kept: saved(database) > before, process)
+        assert stopped(process, signum) == Ended(code, "", says)
+        assert kept < saved(database) < 4500
+        kept = saved(database)
+        assert rows(database, "SELECT count(*), max(step) FROM behavior") == [(kept, kept)]
+        assert rows(database, "PRAGMA integrity_check") == [("ok",)]
+    said = done("report", "--db", database).out
+    assert "stick (unfinished)" in said
+    assert done(*LONG, "--db", database).err.startswith("learned stick")
+    assert done(*LONG, "--db", database).err.startswith("already learned")
+    done(*LONG, "--db", alone)
+    assert contents(database) == contents(alone)
+
+
+@pytest.mark.parametrize(("signum", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_stopped_while_it_starts_it_is_one_line_too(
+    signum: signal.Signals, code: int, tmp_path: Path
+) -> None:
+    """From the moment on in which affcli itself runs; before, it is Python that is stopped."""
+    for delay in (0.0, 0.1, 0.2):
+        process = started(*LONG, "--db", tmp_path / "my.db")
+        wait_until(lambda p=process: handles(p.pid, signum), process)
+        time.sleep(delay)
+        assert stopped(process, signum) == Ended(code, "", GOES_ON)
+
+
+def handles(pid: int, signum: int) -> bool:
+    """Tell whether a process has a handler of its own for both signals (Linux)."""
+    status = Path(f"/proc/{pid}/status")
+    if not status.exists():
+        time.sleep(0.5)
+        return True
+    caught = next(line for line in status.read_text().splitlines() if line.startswith("SigCgt"))
+    both = 1 << (signal.SIGINT - 1) | 1 << (signal.SIGTERM - 1)
+    return int(caught.split()[1], 16) & both == both
+
+
+def test_a_stopped_reproduction_goes_on(leisurely: Path, tmp_path: Path, reproduced: Path) -> None:
+    """Stopped, killed and done with another number of workers: the same store."""
+    database = tmp_path / "my.db"
+    command = ("reproduce", "--robots", "2", "--config", leisurely, "--db", database)
+
+    def robots() -> int:
+        if not database.exists() or not rows(database, "SELECT 1 FROM sqlite_master LIMIT 1"):
+            return 0
+        return len(rows(database, "SELECT DISTINCT robot FROM learning_run"))
+
+    process = started(*command, "--workers", "2")
+    wait_until(lambda: robots() >= 1, process)
+    assert stopped(process, signal.SIGINT) == Ended(130, "", GOES_ON)
+    kept = robots()
+    assert 1 <= kept <= 2
+    process = started(*command, "--workers", "1")
+    if kept < 2:
+        wait_until(lambda: robots() > kept, process)
+    process.kill()
+    ending(process)
+    assert rows(database, "PRAGMA integrity_check") == [("ok",)]
+    done(*command, "--workers", "1")
+    assert contents(database) == contents(reproduced)
+
+
+def test_solving_keeps_the_steps_before_it_was_stopped(learned: Path) -> None:
+    """Counters and steps stay together, and nothing is promised that is not so."""
+    process = started("solve", "--goal", "1", "--tool", "stick", "--db", learned)
+    wait_until(lambda: bool(rows(learned, "SELECT 1 FROM step LIMIT 1")), process)
+    ended = stopped(process, signal.SIGINT)
+    assert (ended.code, ended.err) in {
+        (130, "affcli: stopped; what was saved is kept\n"),
+        (0, ""),  # it was done already
+    }
+    uses = "SELECT sum(times_used - 1), sum(times_successful - 1) FROM affordance"
+    steps = "SELECT count(*), sum(replicated) FROM step"
+    assert rows(learned, uses) == rows(learned, steps)

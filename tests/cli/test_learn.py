@@ -1,0 +1,135 @@
+"""``affcli learn``: what it says and saves; again, at once, and by many (faults 6, 8)."""
+
+from pathlib import Path
+
+import pytest
+
+from affcli.core.tool import TOOL_PARTS
+from tests.cli.program import Ended, contents, done, executed, rows, side_by_side
+
+SHORT = ("learn", "--tool", "stick", "--behaviors", "60")
+
+
+def json_of(*args: str | Path) -> list[dict[str, object]]:
+    """Return what a successful ``learn`` gives as JSON."""
+    value: list[dict[str, object]] = done(*args, "--json").json
+    return value
+
+
+def test_it_says_what_it_did_and_shows_the_groups(tmp_path: Path) -> None:
+    ended = done(*SHORT, "--db", "my.db", cwd=tmp_path)
+    (message,) = ended.err.splitlines()
+    assert message.startswith("learned stick (run 1, seed 0): ")
+    assert "60 behaviors" in message
+    title, headings, _, *table, caption = ended.out.splitlines()
+    assert title == "What the stick affords, by behavior"
+    assert headings.split() == ["behavior", "tried", "rows", "mean", "inches", "mean", "degrees"]
+    assert caption.startswith("mean movement of the rows; degrees: ")
+    tried = dict(line.rsplit(maxsplit=4)[:2] for line in table)
+    known = {f"{name} {inches}" for name in BEHAVIORS for inches in (2, 5)}
+    assert tried.keys() <= known
+    assert sum(map(int, tried.values())) == 60
+
+
+BEHAVIORS = ("extend arm", "contract arm", "slide arm left", "slide arm right")
+
+
+def test_json_holds_the_same_and_nothing_else_is_on_stdout(tmp_path: Path) -> None:
+    database = tmp_path / "my.db"
+    (first,) = json_of(*SHORT, "--db", database)
+    (again,) = json_of(*SHORT, "--db", database)
+    assert (first.pop("new"), again.pop("new")) == (True, False)
+    assert first == again
+    groups = again.pop("groups")
+    assert isinstance(groups, list)
+    assert sum(group["tried"] for group in groups) == again["behaviors"] == 60
+    assert sum(group["rows"] for group in groups) == again["rows"]
+    ((behaviors, made, resets, seconds),) = rows(
+        database, "SELECT behaviors, rows, resets, robot_seconds FROM learning_run"
+    )
+    assert again == {
+        "run": 1,
+        "tool": "stick",
+        "seed": 0,
+        "status": "done",
+        "behaviors": behaviors,
+        "rows": made,
+        "resets": resets,
+        "robot_seconds": seconds,
+    }
+
+
+def test_the_same_run_again_says_so_and_changes_nothing(learned: Path, impatient: Path) -> None:
+    before = learned.read_bytes()
+    again = ("learn", "--tool", "stick,t-hook", "--behaviors", "800", "--config", impatient)
+    ended = done(*again, "--db", learned)
+    first, second = ended.err.splitlines()
+    assert first.startswith("already learned, nothing to do: stick (run 2, seed 0): ")
+    assert second.startswith("already learned, nothing to do: t-hook (run 1, seed 0): ")
+    assert ended.out.count("affords, by behavior") == 2
+    assert learned.read_bytes() == before
+
+
+def test_another_seed_is_another_run(empty: Path) -> None:
+    for seed in ("1", str(2**63 - 1)):
+        done(*SHORT, "--seed", seed, "--db", empty)
+    assert rows(empty, "SELECT seed FROM learning_run") == [(1,), (2**63 - 1,)]
+    per_run = "SELECT count(DISTINCT true_start_x) FROM behavior WHERE step = 1"
+    assert rows(empty, per_run) == [(2,)]
+
+
+def test_the_same_seed_gives_the_same_rows(empty: Path, tmp_path: Path) -> None:
+    done(*SHORT, "--db", empty)
+    done(*SHORT, "--db", tmp_path / "other.db")
+    assert contents(empty) == contents(tmp_path / "other.db")
+
+
+def test_an_hour_is_an_hour_of_robot_time(leisurely: Path, empty: Path) -> None:
+    """The behavior during which the hour ends is the last."""
+    args = ("learn", "--all-tools", "--config", leisurely, "--db", empty)
+    learned = json_of(*args)
+    assert [run["tool"] for run in learned] == list(TOOL_PARTS)
+    for run in learned:
+        seconds = run["robot_seconds"]
+        assert isinstance(seconds, float)
+        assert seconds >= 3600
+    clocks = "SELECT max(clock) FROM behavior GROUP BY learning_run_id ORDER BY learning_run_id"
+    assert [(run["robot_seconds"],) for run in learned] == rows(empty, clocks)
+    before_last = "SELECT count(*) FROM behavior WHERE clock < 3600"
+    assert rows(empty, before_last) == [(sum(int(str(run["behaviors"])) - 1 for run in learned),)]
+    one_hour = json_of(*args, "--hours", "1")
+    assert [run["new"] for run in one_hour] == [False] * 5
+
+
+def one_run(database: Path, behaviors: int) -> None:
+    """Check that a database holds one finished run without holes or repeats."""
+    assert rows(database, "SELECT status, behaviors FROM learning_run") == [("done", behaviors)]
+    steps = "SELECT count(*), count(DISTINCT step), min(step), max(step) FROM behavior"
+    assert rows(database, steps) == [(behaviors, behaviors, 1, behaviors)]
+    assert rows(database, "PRAGMA integrity_check") == [("ok",)]
+
+
+def all_well(ended: list[Ended]) -> None:
+    """Check that processes side by side all ended well."""
+    assert [one.code for one in ended] == [0] * len(ended)
+    for one in ended:
+        assert "What the stick affords" in one.out
+        assert len(one.err.splitlines()) == 1
+
+
+@pytest.mark.parametrize("first_runs", [2, 8])
+def test_several_at_once_make_one_run(first_runs: int, tmp_path: Path) -> None:
+    """Even the first on a new file: one migrates, the others wait, nobody fails."""
+    behaviors = 1600 if first_runs == 2 else 60
+    args = ("learn", "--tool", "stick", "--behaviors", str(behaviors), "--db", tmp_path / "new.db")
+    all_well(side_by_side(first_runs, *args))
+    one_run(tmp_path / "new.db", behaviors)
+    alone = tmp_path / "alone.db"
+    done(*args[:-1], alone)
+    assert contents(tmp_path / "new.db") == contents(alone)
+
+
+def test_it_runs_from_the_start_of_python_on(tmp_path: Path) -> None:
+    """Not forked from a warm process, as most tests are: migration, learning, table."""
+    all_well([executed(*SHORT, "--db", tmp_path / "new.db")])
+    one_run(tmp_path / "new.db", 60)

@@ -1,0 +1,82 @@
+"""A file or folder that cannot be written (fault 16): reading goes on, writing is refused."""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.cli.program import ROOT, environment, names_in, one_printable_line
+
+READING = (("report",), ("sql", "select count(*) from affordance"), ("db", "info"))
+WRITING = (
+    ("learn", "--tool", "stick", "--behaviors", "5"),
+    ("solve", "--goal", "2"),
+    ("break-tool",),
+    ("reproduce", "--robots", "1"),
+    ("db", "upgrade"),
+)
+
+
+@pytest.fixture
+def public(learned: Path) -> Iterator[Path]:
+    """`learned` in a folder that everybody may enter; pytest's own are for their owner alone."""
+    with tempfile.TemporaryDirectory() as name:
+        path = Path(name) / "kept.db"
+        path.write_bytes(learned.read_bytes())
+        yield path
+        path.parent.chmod(0o755)
+
+
+@pytest.mark.parametrize("what", ["file", "folder"])
+def test_reading_works_and_writing_is_refused(what: str, public: Path) -> None:
+    public.chmod(0o444 if what == "file" else 0o666)
+    public.parent.chmod(0o777 if what == "file" else 0o555)
+    before = public.read_bytes()
+    commands = [[*args, "--db", str(public)] for args in (*READING, *WRITING)]
+    ended = subprocess.run(
+        [sys.executable, "-m", "tests.cli.unprivileged", json.dumps(commands)],
+        cwd=ROOT,
+        env=environment(),
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert (ended.returncode, ended.stderr) == (0, "")
+    results = [json.loads(line) for line in ended.stdout.splitlines()]
+    assert len(results) == len(commands)
+    for code, out, err in results[: len(READING)]:
+        assert (code, err) == (0, "")
+        assert out
+    for code, out, err in results[len(READING) :]:
+        assert (code, out) == (3, "")
+        line = one_printable_line(err)
+        assert "the file or its folder is read-only; allow yourself to write there" in line
+    assert public.read_bytes() == before
+    assert names_in(public.parent) == [public.name]
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root can make a file that is another's")
+def test_a_file_that_may_not_be_read_is_named(public: Path) -> None:
+    public.chmod(0o000)
+    public.parent.chmod(0o755)
+    commands = [[*args, "--db", str(public)] for args in (*READING, WRITING[0])]
+    ended = subprocess.run(
+        [sys.executable, "-m", "tests.cli.unprivileged", json.dumps(commands)],
+        cwd=ROOT,
+        env=environment(),
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert (ended.returncode, ended.stderr) == (0, "")
+    for line in ended.stdout.splitlines():
+        code, out, err = json.loads(line)
+        assert (code, out) == (3, "")
+        assert "access is denied" in one_printable_line(err)
