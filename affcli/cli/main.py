@@ -14,9 +14,26 @@ GO_ON = ("learn", "reproduce")
 class Stopped(BaseException):
     """The process was asked to end; not an Exception, so nothing takes it for a failure."""
 
-    def __init__(self, signum: int) -> None:
-        super().__init__(signum)
-        self.exit_code = 128 + signum
+
+class Stop:
+    """What SIGINT and SIGTERM do: leave by an exception, so that what is open is closed.
+
+    A second signal ends the process at once; SQLite then rolls back when the file is next opened.
+    """
+
+    signum: int | None = None
+
+    def __init__(self) -> None:
+        for signum in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(signum, self)
+
+    def __call__(self, signum: int, frame: FrameType | None) -> None:
+        """Remember the signal and leave."""
+        del frame
+        self.signum = signum
+        for either in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(either, signal.SIG_DFL)
+        raise Stopped
 
 
 def main() -> int:
@@ -26,15 +43,18 @@ def main() -> int:
     what a user can cause becomes one line on stderr; a bug keeps its traceback.
     """
     prepare_streams()
+    stop = Stop()
     try:
-        for signum in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(signum, _stop)
         return _run()
-    except AffcliError as error:
-        return _fail(str(error), error.exit_code)
-    except Stopped as stopped:
-        goes_on = ", and the same command goes on from there" if _command() in GO_ON else ""
-        return _fail(f"stopped; what was saved is kept{goes_on}", stopped.exit_code)
+    except BaseException as error:
+        # After a signal this may be another exception than ours: sqlite3 forgets what is raised in
+        # its callbacks, and SQLAlchemy closes the connection that a signal interrupts.
+        if stop.signum is not None:
+            goes_on = ", and the same command goes on from there" if _command() in GO_ON else ""
+            return _fail(f"stopped; what was saved is kept{goes_on}", 128 + stop.signum)
+        if isinstance(error, AffcliError):
+            return _fail(str(error), error.exit_code)
+        raise
 
 
 def _run() -> int:
@@ -45,7 +65,7 @@ def _run() -> int:
     from affcli.cli.app import app
 
     try:
-        code = app(standalone_mode=False)
+        code = app(prog_name="affcli", standalone_mode=False)
     except typer.TyperException as error:
         return _fail(error.format_message(), error.exit_code)
     return code if isinstance(code, int) else 0
@@ -60,14 +80,3 @@ def _fail(message: str, code: int) -> int:
 def _command() -> str:
     """Return the command that was given, empty if none."""
     return next(iter(sys.argv[1:]), "")
-
-
-def _stop(signum: int, frame: FrameType | None) -> None:
-    """Leave by an exception, so that open transactions are rolled back on the way out.
-
-    A second signal ends the process at once; SQLite then rolls back when the file is next opened.
-    """
-    del frame
-    for either in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(either, signal.SIG_DFL)
-    raise Stopped(signum)

@@ -78,7 +78,8 @@ def reproduce(
     text = settings.to_json()
     session = store.begin_session("reproduce", seed, robots, text, versions(), now())
     yield session
-    missing = [i for i in range(robots) if i not in store.saved_robots(session)]
+    there = store.saved_robots(session)
+    missing = [i for i in range(robots) if i not in there]
     saved = robots - len(missing)
     for life in _lives(settings, seed, missing, workers):
         store.save_robot(session, life, versions(), now())

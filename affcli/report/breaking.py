@@ -166,20 +166,24 @@ def _figures(tally: Tally) -> tuple[str, ...]:
 
 
 def _excluded_table(dead: Sequence[DeadRow]) -> Sheet:
-    """Return the rows that died, most trials first."""
+    """Return the rows that died, by behavior and side; one by one they stand in the JSON."""
     missing = sum(row.on_missing_side for row in dead)
     table = Sheet(
-        ("row", "behavior", "side", "lost", "trials"),
+        ("behavior", "side", "rows", "truly lost", "times"),
         title=f"Rows excluded with the broken tool: {len(dead)}, {missing} on the missing side",
-        caption="row: the learning step that made it; lost: the broken shape truly cannot do it",
-        left=("behavior", "side", "lost"),
+        caption="side: where the attractor was; truly lost: the broken shape cannot do it; "
+        "times: over the 16 trials; --json lists each row",
+        left=("behavior", "side"),
     )
-    for row in sorted(dead, key=lambda d: (-d.trials, d.row.step)):
+    groups: dict[tuple[str, bool], list[DeadRow]] = {}
+    for row in dead:
+        groups.setdefault((str(row.row.exploratory), row.on_missing_side), []).append(row)
+    for (behavior, on_missing), rows in sorted(groups.items(), key=lambda g: (-len(g[1]), g[0])):
         table.add(
-            str(row.row.step),
-            str(row.row.exploratory),
-            "missing" if row.on_missing_side else "other",
-            "yes" if row.lost else "no",
-            str(row.trials),
+            behavior,
+            "missing" if on_missing else "other",
+            str(len(rows)),
+            str(sum(row.lost for row in rows)),
+            str(sum(row.trials for row in rows)),
         )
     return table

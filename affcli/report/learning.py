@@ -72,7 +72,7 @@ class LearnedTool(Protocol):
 def groups_table(tool: str, groups: Iterable[BehaviorGroup]) -> Sheet:
     """Return the behavior-distance groups: tried, rows, mean movement and direction."""
     table = Sheet(
-        ("behavior", "tried", "rows", "mean inches", "mean degrees"),
+        ("behavior", "tried", "rows", "inches", "degrees"),
         title=f"What the {tool} affords, by behavior",
         caption="mean movement of the rows; degrees: 0 right, 90 away from the robot, 180 left",
         left=("behavior",),

@@ -66,9 +66,7 @@ class Warm:
             start_new_session=True,
         )
 
-    def run(
-        self, args: list[str], cwd: Path, env: dict[str, str], copies: int = 1
-    ) -> list[Ended]:
+    def run(self, args: list[str], cwd: Path, env: dict[str, str], copies: int = 1) -> list[Ended]:
         """Run a command, or several copies of it side by side, to its end."""
         out, err = (f"{self.folder.name}/{name}" for name in ("out", "err"))
         request = {"args": args, "cwd": str(cwd), "env": env, "copies": copies}
@@ -173,7 +171,8 @@ def ending(process: subprocess.Popen[str], timeout: float = PATIENCE) -> Ended:
 
 def rows(database: Path, query: str) -> list[tuple[Any, ...]]:
     """Ask a database without affcli; wait for whoever writes to it."""
-    with closing(sqlite3.connect(f"{database.absolute().as_uri()}?mode=ro", uri=True)) as driver:
+    # Not read-only: after a kill the file must first be set right from its journal.
+    with closing(sqlite3.connect(f"{database.absolute().as_uri()}?mode=rw", uri=True)) as driver:
         driver.execute("PRAGMA busy_timeout = 20000")
         return list(driver.execute(query))
 

@@ -77,7 +77,7 @@ def from_the_future(path: Path) -> None:
         driver.execute("UPDATE alembic_version SET version_num = '0099'")
 
 
-SPOILT = {
+SPOILT: dict[Callable[[Path], None], str] = {
     not_a_database: "not a SQLite database; name another file with --db",
     truncated: "damaged; restore a copy of the file",
     of_another_program: "of another program; name another file with --db",
@@ -147,7 +147,7 @@ def test_a_path_of_no_character_is_shown_escaped(tmp_path: Path) -> None:
     done(*MAKING["learn"], "--db", name, cwd=tmp_path)
     assert "\\udcff.db" in done("db", "info", "--db", name, cwd=tmp_path).out
     assert done("db", "info", "--db", name, "--json", cwd=tmp_path).json["path"] == "\udcff.db"
-    assert os.listdir(os.fsencode(tmp_path)) == [name]
+    assert [os.fsencode(path.name) for path in tmp_path.iterdir()] == [name]
 
 
 def test_the_database_is_db_else_the_environment_else_here(tmp_path: Path) -> None:

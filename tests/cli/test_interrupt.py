@@ -3,23 +3,41 @@
 import signal
 import subprocess
 import time
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from tests.cli.program import Ended, contents, done, ending, rows, started, wait_until
 
-LONG = ("learn", "--tool", "stick", "--behaviors", "4500")
+LONG = ("learn", "--tool", "stick", "--behaviors", "7000")
 GOES_ON = "affcli: stopped; what was saved is kept, and the same command goes on from there\n"
 SOON = 10.0
 """Seconds: five times what a person is promised."""
 
 
 def saved(database: Path) -> int:
-    """Return how many behaviors of a run are saved."""
+    """Return how many behaviors are saved."""
+    return count(database, "SELECT coalesce(sum(behaviors), 0) FROM learning_run")
+
+
+def robots(database: Path) -> int:
+    """Return how many robots are saved."""
+    return count(database, "SELECT count(DISTINCT robot) FROM learning_run")
+
+
+def count(database: Path, query: str) -> int:
+    """Return what a query counts; 0 while there is no database yet."""
     if not database.exists() or not rows(database, "SELECT 1 FROM sqlite_master LIMIT 1"):
         return 0
-    return sum(count for (count,) in rows(database, "SELECT behaviors FROM learning_run"))
+    ((number,),) = rows(database, query)
+    return int(number)
+
+
+def more_than(kept: int, how_many: Callable[[], int]) -> Callable[[], bool]:
+    """Ask whether there are more than so many."""
+    return lambda: how_many() > kept
 
 
 def stopped(process: subprocess.Popen[str], signum: int) -> Ended:
@@ -41,9 +59,9 @@ def test_learning_goes_on_after_whatever_stopped_it(tmp_path: Path) -> None:
         (signal.SIGKILL, -signal.SIGKILL, ""),
     ):
         process = started(*LONG, "--db", database)
-        wait_until(lambda before=kept: saved(database) > before, process)
+        wait_until(more_than(kept, partial(saved, database)), process)
         assert stopped(process, signum) == Ended(code, "", says)
-        assert kept < saved(database) < 4500
+        assert kept < saved(database) < 7000
         kept = saved(database)
         assert rows(database, "SELECT count(*), max(step) FROM behavior") == [(kept, kept)]
         assert rows(database, "PRAGMA integrity_check") == [("ok",)]
@@ -62,13 +80,13 @@ def test_stopped_while_it_starts_it_is_one_line_too(
     """From the moment on in which affcli itself runs; before, it is Python that is stopped."""
     for delay in (0.0, 0.1, 0.2):
         process = started(*LONG, "--db", tmp_path / "my.db")
-        wait_until(lambda p=process: handles(p.pid, signum), process)
+        wait_until(partial(handles_signals, process.pid), process)
         time.sleep(delay)
         assert stopped(process, signum) == Ended(code, "", GOES_ON)
 
 
-def handles(pid: int, signum: int) -> bool:
-    """Tell whether a process has a handler of its own for both signals (Linux)."""
+def handles_signals(pid: int) -> bool:
+    """Tell whether a process has handlers of its own for both signals (Linux)."""
     status = Path(f"/proc/{pid}/status")
     if not status.exists():
         time.sleep(0.5)
@@ -83,19 +101,14 @@ def test_a_stopped_reproduction_goes_on(leisurely: Path, tmp_path: Path, reprodu
     database = tmp_path / "my.db"
     command = ("reproduce", "--robots", "2", "--config", leisurely, "--db", database)
 
-    def robots() -> int:
-        if not database.exists() or not rows(database, "SELECT 1 FROM sqlite_master LIMIT 1"):
-            return 0
-        return len(rows(database, "SELECT DISTINCT robot FROM learning_run"))
-
     process = started(*command, "--workers", "2")
-    wait_until(lambda: robots() >= 1, process)
+    wait_until(more_than(0, partial(robots, database)), process)
     assert stopped(process, signal.SIGINT) == Ended(130, "", GOES_ON)
-    kept = robots()
+    kept = robots(database)
     assert 1 <= kept <= 2
     process = started(*command, "--workers", "1")
     if kept < 2:
-        wait_until(lambda: robots() > kept, process)
+        wait_until(more_than(kept, partial(robots, database)), process)
     process.kill()
     ending(process)
     assert rows(database, "PRAGMA integrity_check") == [("ok",)]

@@ -23,7 +23,7 @@ def test_it_says_what_it_did_and_shows_the_groups(tmp_path: Path) -> None:
     assert "60 behaviors" in message
     title, headings, _, *table, caption = ended.out.splitlines()
     assert title == "What the stick affords, by behavior"
-    assert headings.split() == ["behavior", "tried", "rows", "mean", "inches", "mean", "degrees"]
+    assert headings.split() == ["behavior", "tried", "rows", "inches", "degrees"]
     assert caption.startswith("mean movement of the rows; degrees: ")
     tried = dict(line.rsplit(maxsplit=4)[:2] for line in table)
     known = {f"{name} {inches}" for name in BEHAVIORS for inches in (2, 5)}

@@ -128,4 +128,6 @@ def test_every_life_is_in_the_store(reproduced: Path) -> None:
     assert rows(reproduced, "SELECT DISTINCT times_used, times_successful FROM affordance") == [
         (1, 1)
     ]
-    assert rows(reproduced, "SELECT kind, robots, status FROM session") == [("reproduce", 2, "done")]
+    assert rows(reproduced, "SELECT kind, robots, status FROM session") == [
+        ("reproduce", 2, "done")
+    ]

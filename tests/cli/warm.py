@@ -4,8 +4,8 @@ Each command is a process of its own, with its own arguments, folder, environmen
 starting Python, importing and cleaning up, which would take most of the tests' time, is left out.
 What is about these is tested without this.
 
-A request is a line of JSON on stdin: args, cwd, env, the files that stdout and stderr go to, and how
-many copies to run side by side. The answer is a line with their exit codes.
+A request is a line of JSON on stdin: args, cwd, env, the files that stdout and stderr go to, and
+how many copies to run side by side. The answer is a line with their exit codes.
 """
 
 import gc
@@ -61,9 +61,10 @@ def become(request: dict[str, Any]) -> None:
         file = os.open(stream, os.O_RDWR | os.O_CREAT | os.O_TRUNC)
         os.dup2(file, number)
         os.close(file)
-    sys.stdin = open(0, encoding="utf-8", closefd=False)
-    sys.stdout = open(1, "w", encoding="utf-8", closefd=False)
-    sys.stderr = open(2, "w", encoding="utf-8", errors="backslashreplace", closefd=False)
+    sys.stdout, sys.stderr = (
+        io.TextIOWrapper(io.FileIO(number, "w", closefd=False), encoding="utf-8", errors=errors)
+        for number, errors in ((1, "strict"), (2, "backslashreplace"))
+    )
     os.environ.clear()
     os.environ.update(request["env"])
     os.chdir(request["cwd"])
@@ -76,7 +77,7 @@ def run(request: dict[str, Any]) -> NoReturn:
     try:
         become(request)
         code = main()
-    except BaseException:
+    except BaseException:  # noqa: BLE001 as Python does with what nobody catches
         traceback.print_exc()
     finally:
         sys.stdout.flush()

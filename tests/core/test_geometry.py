@@ -62,6 +62,18 @@ def test_distance_is_that_of_shapely_and_zero_inside(polygon: ConvexPolygon, poi
 
 
 @settings(deadline=None)
+@given(convex_polygons(), points)
+def test_the_bounding_box_is_never_farther_than_the_polygon(
+    polygon: ConvexPolygon, point: Point
+) -> None:
+    box = ConvexPolygon.box(*polygon.bounds)
+    assert polygon.box_distance(point) == pytest.approx(box.distance(point), abs=1e-9)
+    assert polygon.box_distance(point) <= polygon.distance(point) + 1e-9
+    assert box.is_box
+    assert polygon.is_box is (abs(box.area - polygon.area) < 1e-9)
+
+
+@settings(deadline=None)
 @given(convex_polygons(), points, points)
 def test_moving_polygon_and_point_together_keeps_their_distance(
     polygon: ConvexPolygon, point: Point, shift: Point

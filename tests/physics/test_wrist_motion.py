@@ -9,7 +9,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from affcli.core.geometry import Point
-from affcli.simulation.arm import reach_at
+from affcli.simulation.arm import Reach, reach_at
 from affcli.simulation.wrist_motion import (
     GRID,
     STEP,
@@ -142,11 +142,12 @@ def test_a_motion_stops_where_the_reach_ends(start: Point, towards: Point, lengt
 
 
 def test_a_motion_across_the_inner_edge_stops_before_it_although_its_end_is_in_reach() -> None:
-    start, end = Point(REACH.inner + 1.0, 0.5), Point(-REACH.inner - 1.0, 0.5)
-    assert REACH.holds(start)
-    assert REACH.holds(end)
-    assert stop_at_edge(REACH, start, end).x == pytest.approx(
-        math.sqrt(REACH.inner**2 - 0.25), abs=2.0 * GRID
+    ring = Reach(inner=5.0, outer=18.0, waist_max=math.radians(90.0))
+    start, end = Point(6.0, 0.5), Point(-6.0, 0.5)
+    assert ring.holds(start)
+    assert ring.holds(end)
+    assert stop_at_edge(ring, start, end).x == pytest.approx(
+        math.sqrt(5.0**2 - 0.5**2), abs=2.0 * GRID
     )
 
 

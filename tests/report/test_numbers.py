@@ -1,0 +1,135 @@
+"""What the reports say as JSON, against hand-made records whose numbers are known."""
+
+import json
+
+import pytest
+
+from affcli.core.geometry import Point
+from affcli.report.breaking import Tally, broken_json, dead_rows
+from affcli.report.learning import clock, groups_json, run_json, summary, whole_degrees
+from affcli.report.overview import overview_json
+from affcli.report.paper import BROKEN_TOOL, EXTENSION_OF_REACH, TOTAL, TRIALS_A_CELL
+from affcli.report.reproduction import reproduction_json
+from tests.report.hand_made import BROKEN, FOUR_ROBOTS, GROUPS, OVERVIEW, RUNS, WHOLE, Run
+
+
+def test_the_papers_table() -> None:
+    """§7.1: 69 of 80; its row and column sums."""
+    assert TOTAL == 69
+    assert [sum(counts) for counts in EXTENSION_OF_REACH.values()] == [10, 14, 15, 14, 16]
+    columns = zip(*EXTENSION_OF_REACH.values(), strict=True)
+    assert [sum(counts) for counts in columns] == [15, 14, 20, 20]
+    assert len(EXTENSION_OF_REACH) * 4 * TRIALS_A_CELL == 80
+    assert BROKEN_TOOL == 16
+
+
+def test_tally() -> None:
+    assert Tally.of(BROKEN) == Tally(
+        trials=3,
+        solved=2,
+        steps=4,
+        tries=6,
+        replicated=3,
+        tries_on_lost=3,
+        trials_with_lost=2,
+        excluded=3,
+    )
+    assert Tally.of(BROKEN).mean_steps == 2.0
+    assert Tally.of(BROKEN[2:]).mean_steps is None
+    assert Tally.of(()) == Tally(0, 0, 0, 0, 0, 0, 0, 0)
+
+
+def test_dead_rows_and_their_side() -> None:
+    """Row 9 stood to the right of the wrist, row 11 to the left; the tool lost its right side."""
+    dead = {row.row.step: row for row in dead_rows(BROKEN, 3.5)}
+    assert list(dead) == [9, 11]
+    assert (dead[9].on_missing_side, dead[9].lost, dead[9].trials) == (True, True, 2)
+    assert (dead[11].on_missing_side, dead[11].lost, dead[11].trials) == (False, False, 1)
+    assert [row.on_missing_side for row in dead_rows(BROKEN, -3.5)] == [False, True]
+    assert [row.on_missing_side for row in dead_rows(BROKEN, 0.0)] == [False, False]
+
+
+def test_broken_json() -> None:
+    value = broken_json("l-hook", 3.5, [*WHOLE, *BROKEN])
+    assert value["broken"]["solved"] == 2
+    assert value["whole"]["trials"] == 3
+    assert value["whole"]["mean_steps"] == 1.0
+    assert value["excluded_rows"][0] == {
+        "row": 9,
+        "behavior": "slide arm left 5",
+        "on_missing_side": True,
+        "lost": True,
+        "trials": 2,
+    }
+    json.dumps(value, allow_nan=False)
+
+
+def test_reproduction_json() -> None:
+    value = reproduction_json(FOUR_ROBOTS)
+    assert (value["robots"], len(value["cells"])) == (4, 20)
+    first, second, *_ = value["cells"]
+    assert (first["tool"], first["goal"], first["paper"]) == ("stick", 1, 0)
+    assert (first["mean"], first["low"], first["high"]) == (1.0, 0, 2)
+    assert (first["p_paper"], first["inside"]) == (0.25, True)
+    assert (second["paper"], second["p_paper"], second["inside"]) == (2, 0.25, True)
+    other = value["cells"][4:]
+    assert all(cell["p_paper"] == 1.0 for cell in other)
+    assert all(cell["mean"] == cell["low"] == cell["high"] == cell["paper"] for cell in other)
+    assert FOUR_ROBOTS.totals == [59, 63, 63, 67]
+    total = value["total"]
+    assert (total["paper"], total["mean"], total["inside"]) == (69, 63.0, False)
+    assert value["broken"]["mean"] == 15.0
+    assert value["failures"] == FOUR_ROBOTS.failures
+    json.dumps(value, allow_nan=False)
+
+
+def test_overview_json_is_json() -> None:
+    value = json.loads(json.dumps(overview_json(OVERVIEW), allow_nan=False))
+    assert [run["status"] for run in value["learned"]] == ["done", "running"]
+    assert value["solved"][0] == {"tool": "t-hook", "goal": 1, "solved": 3, "tried": 4}
+    assert value["broken"][1]["broken"]["mean_steps"] is None
+    assert value["reproduction"]["robots"] == 4
+
+
+def test_groups_and_runs_json() -> None:
+    none, some, *_ = groups_json(GROUPS)
+    assert none["behavior"] == "contract arm"
+    assert none["params"] == {"offset_distance": 2}
+    assert none["mean_movement"] is None
+    assert (some["tried"], some["rows"], some["mean_dy"]) == (99, 12, -3.4)
+    assert run_json(RUNS[1])["seed"] == 2**63 - 1
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [
+        (0.0, "0 min 00 s"),
+        (59.6, "1 min 00 s"),
+        (3599.4, "59 min 59 s"),
+        (3599.6, "1 h 00 min"),
+        (3661.0, "1 h 01 min"),
+        (36_000_000.0, "10000 h 00 min"),
+    ],
+)
+def test_robot_time(seconds: float, words: str) -> None:
+    assert clock(seconds) == words
+
+
+def test_one_is_not_many() -> None:
+    one = Run(1, RUNS[0].spec, behaviors=1, rows=1, resets=1, robot_seconds=5.2)
+    assert summary(one) == "0 min 05 s, 1 behavior, 1 row, 1 reset"
+    none = Run(1, RUNS[0].spec, behaviors=2, rows=0, resets=2, robot_seconds=5.2)
+    assert summary(none) == "0 min 05 s, 2 behaviors, 0 rows, 2 resets"
+
+
+@pytest.mark.parametrize(
+    ("direction", "degrees"), [(359.7, 0), (-0.2, 0), (-90.0, 270), (180.4, 180), (0.6, 1)]
+)
+def test_directions_are_0_to_359(direction: float, degrees: int) -> None:
+    assert whole_degrees(direction) == degrees
+
+
+def test_the_hand_made_rows_are_what_they_say() -> None:
+    row = BROKEN[0].steps[0].record.row
+    assert row.start.wrist_to_object == Point(-5.0, 8.0)
+    assert (row.expected_movement.dx, row.expected_movement.dy) == (-4.0, 0.0)

@@ -1,0 +1,71 @@
+"""Every table, on a screen of 80 and of 40 columns, as it was when somebody last looked at it.
+
+After a change that was meant: ``pytest tests/report --snapshot-update``, and look at the diff.
+"""
+
+import io
+
+import pytest
+from rich.console import Console, RenderableType
+from syrupy.assertion import SnapshotAssertion
+
+from affcli.core.trial import Outcome
+from affcli.report.breaking import broken_tables
+from affcli.report.learning import groups_table, learned_table
+from affcli.report.overview import overview_tables
+from affcli.report.reproduction import failures_table, reproduction_tables
+from affcli.report.trials import counts_table, explain_trial, solve_table
+from tests.report import hand_made
+from tests.report.hand_made import BROKEN, FOUR_ROBOTS, GROUPS, OVERVIEW, RUNS, WHOLE, row, spec
+
+SOLVED, LIMIT = Outcome.SOLVED, Outcome.STEP_LIMIT
+OUT, NO_ROW = Outcome.ATTRACTOR_OUT_OF_REACH, Outcome.NO_ROW
+ENDS = {
+    "stick": ((LIMIT, 32), (LIMIT, 32), (OUT, 7), (NO_ROW, 0)),
+    "t-hook": ((SOLVED, 3), (SOLVED, 12), (SOLVED, 1), (OUT, 10)),
+}
+SOLVE = [
+    (trial.spec, trial.end)
+    for tool, ends in ENDS.items()
+    for start, (outcome, steps) in enumerate(ends, start=1)
+    for trial in [hand_made.trial(spec(start, tool=tool), outcome, steps_taken=steps)]
+]
+MISSING_SIDE = 3.5
+"""What the L-hook lacks of the T-hook lies to the right."""
+
+EXPLAINED = hand_made.trial(
+    spec(2),
+    NO_ROW,
+    hand_made.step(1, row(7)),
+    hand_made.step(2, row(9), seen=(0.1, 0.0)),
+    hand_made.step(3, row(11), blocked=True),
+    hand_made.step(4, row(7, used=3, successful=3), seen=(0.0, 2.0)),
+)
+
+TABLES: dict[str, tuple[RenderableType, ...]] = {
+    "groups": (groups_table("t-hook", GROUPS),),
+    "learned": (learned_table(RUNS),),
+    "solve": (solve_table(2, SOLVE),),
+    "solve, one start": (solve_table(3, SOLVE[5:6]),),
+    "explain": (
+        explain_trial(EXPLAINED.spec, EXPLAINED.end, [step.record for step in EXPLAINED.steps]),
+    ),
+    "counts": (counts_table("Extension of reach", OVERVIEW.solved),),
+    "broken": broken_tables("l-hook", MISSING_SIDE, [*BROKEN, *WHOLE]),
+    "failures": (failures_table({"step limit": 2, "no row left": 2, "invalid": 31}, 80),),
+    "no failures": (failures_table({}, 16),),
+    "reproduction": reproduction_tables(FOUR_ROBOTS),
+    "overview": tuple(overview_tables(OVERVIEW)),
+}
+
+
+@pytest.mark.parametrize("columns", [80, 40])
+@pytest.mark.parametrize("name", TABLES)
+def test_table(name: str, columns: int, snapshot: SnapshotAssertion) -> None:
+    file = io.StringIO()
+    console = Console(file=file, width=columns, markup=False, highlight=False, emoji=False)
+    for table in TABLES[name]:
+        console.print(table, "")
+    lines = [line.rstrip() for line in file.getvalue().splitlines()]
+    assert max(map(len, lines)) <= columns
+    assert "\n".join(lines) == snapshot
