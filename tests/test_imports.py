@@ -1,0 +1,68 @@
+"""What a command imports, for that is most of the time a short command takes."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from affcli.store import open_store
+
+RUN = """\
+import sys
+from affcli.cli.main import main
+code = main()
+sys.stderr.write("\\n".join(["", f"exit {code}", *sys.modules]))
+"""
+
+
+def imported_by(*args: str | Path) -> set[str]:
+    """Run a command to its end and return the modules that it imported."""
+    ended = subprocess.run(
+        [sys.executable, "-c", RUN, *args],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=True,
+    )
+    modules = ended.stderr.splitlines()
+    assert "exit 0" in modules, ended
+    return set(modules)
+
+
+@pytest.fixture
+def empty(tmp_path: Path) -> Path:
+    """A database without records."""
+    path = tmp_path / "empty.db"
+    with open_store(path, create=True, write=True):
+        pass
+    return path
+
+
+def test_help_imports_nothing_heavy() -> None:
+    heavy = {"numpy", "sqlalchemy", "pymunk", "alembic", "scipy", "sqlite3", "rich.table"}
+    for args in (("--help",), ("--version",), ("learn", "--help")):
+        assert not imported_by(*args) & heavy
+
+
+def test_sql_imports_neither_sqlalchemy_nor_physics(empty: Path) -> None:
+    heavy = {"numpy", "sqlalchemy", "pymunk", "alembic"}
+    query = ("sql", "select * from affordance_table", "--db", empty)
+    assert not imported_by(*query) & heavy
+    assert not imported_by(*query, "--json") & (heavy | {"rich.table"})
+    assert not imported_by("db", "info", "--json", "--db", empty) & heavy
+
+
+def test_learning_in_an_existing_database_imports_no_alembic(empty: Path, tmp_path: Path) -> None:
+    learn = ("learn", "--tool", "stick", "--behaviors", "5", "--db")
+    assert "alembic" in imported_by(*learn, tmp_path / "new.db")
+    modules = imported_by(*learn, empty)
+    assert "alembic" not in modules
+    assert {"numpy", "pymunk", "sqlalchemy"} <= modules
+    assert "rich.progress" not in modules  # there is no terminal to show it on
+
+
+def test_the_tests_libraries_stay_with_the_tests(empty: Path) -> None:
+    modules = imported_by("report", "--db", empty)
+    assert not modules & {"pytest", "hypothesis", "scipy", "shapely", "syrupy", "matplotlib"}
