@@ -31,7 +31,7 @@ demo: $(INSTALLED)
 	AFFCLI_DB=demo.db $(AFFCLI) break-tool
 	AFFCLI_DB=demo.db $(AFFCLI) report
 	@printf '\nThe database: %s\nA query to try:\n  %s\n' '$(CURDIR)/demo.db' \
-	  '$(AFFCLI) sql --db demo.db "select * from affordance_table limit 5"'
+	  '$(AFFCLI) sql --db demo.db "select exploratory_behavior, exploratory_params, round(movement, 1) as inches, round(direction) as degrees, times_successful, times_used from affordance_table order by times_used desc limit 5"'
 
 ## test       run the tests
 test: $(INSTALLED_DEV)

@@ -48,12 +48,12 @@ def test_there_are_five_queries_to_try() -> None:
     assert len(QUERIES) >= 5
 
 
-@pytest.mark.parametrize("query", QUERIES, ids=[query.split()[1] for query in QUERIES])
-def test_every_query_runs(query: str, database: Path) -> None:
-    ended = done("sql", query, "--db", database)
+@pytest.mark.parametrize("number", range(len(QUERIES)))
+def test_every_query_runs(number: int, database: Path) -> None:
+    """How many rows it finds is up to what the robot did."""
+    ended = done("sql", QUERIES[number], "--db", database)
     assert ended.err in {"", "no rows\n"}
-    value = done("sql", query, "--json", "--db", database).json
-    assert value or "direction between" in query  # whether the robot pulled is up to its play
+    assert isinstance(done("sql", QUERIES[number], "--json", "--db", database).json, list)
 
 
 def commands() -> list[tuple[str, ...]]:
@@ -123,8 +123,7 @@ def test_the_map_shows_every_room() -> None:
         assert (ROOT / "affcli" / name).exists() or (ROOT / name).exists(), name
 
 
-def test_every_shared_table_and_view_is_described(database: Path) -> None:
-    """The data dictionary names every table and view, and every column of the tables."""
+def test_the_data_dictionary_names_every_table_and_view(database: Path) -> None:
     kinds = "SELECT name FROM sqlite_master WHERE type IN ('table', 'view')"
     for (name,) in rows(database, kinds):
         if name != "alembic_version":

@@ -2,8 +2,10 @@
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import pymunk
+from pymunk._chipmunk_cffi import lib as chipmunk
 
 from affcli.core.geometry import ConvexPolygon, Point, Pose
 from affcli.core.workspace import PuckGeometry, SurfaceFriction
@@ -72,6 +74,9 @@ class PushSimulator:
         joints = surface_friction(self._space.static_body, self._puck, puck, friction)
         self._space.add(*joints)
         self._joints = joints
+        # Space.step() looks before and after each step for what callbacks have added or removed.
+        # There are none here, and without that a push takes a fifth less time.
+        self._step = partial(chipmunk.cpSpaceStep, self._space._space)  # noqa: SLF001
         self._friction_share = joints[0].max_force
 
     def push(
@@ -118,7 +123,7 @@ class PushSimulator:
                     stride, count = pace.next(puck_now, tool_now, speed, left)
                 left -= stride * count
                 for _ in range(count):
-                    self._space.step(stride * STEP)
+                    self._step(stride * STEP)
                     if watch is not None:
                         gone += stride * speed * STEP
                         watch(gone, self._puck_pose())
@@ -139,7 +144,7 @@ class PushSimulator:
         self._place(FAR_AWAY, wrist)
         for joint in self._joints:
             joint.max_force = 0.0
-        self._space.step(STEP)
+        self._step(STEP)
         for joint in self._joints:
             joint.max_force = self._friction_share
         self._place(puck, wrist)
@@ -161,7 +166,7 @@ class PushSimulator:
         for _ in range(SETTLE_STEPS):
             if self._puck.velocity.length < REST_SPEED:
                 return
-            self._space.step(STEP)
+            self._step(STEP)
             if watch is not None:
                 watch(gone, self._puck_pose())
 

@@ -1,24 +1,17 @@
 """Databases that were learned once; every test works on a copy of its own."""
 
 import shutil
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from affcli.store import open_store
-from tests.cli.program import done, warm
+from tests.cli.program import done
 
 IMPATIENT = "[trial]\nmax_steps = 6\n"
 """Trials are given up soon."""
 LEISURELY = f"[motion]\nhold = 25.0\n{IMPATIENT}"
 """The robot stands still for so long, too, that an hour holds some seventy behaviors."""
-
-
-@pytest.fixture(scope="session", autouse=True)
-def _warm_program() -> Iterator[None]:
-    yield
-    warm().stop()
 
 
 @pytest.fixture(scope="session")

@@ -1,5 +1,6 @@
 """The real program as a process: run it, read it, and look into its database."""
 
+import atexit
 import json
 import os
 import select
@@ -88,7 +89,8 @@ class Warm:
 
     def stop(self) -> None:
         """End it, and a command that hangs with it."""
-        os.killpg(self.process.pid, signal.SIGKILL)
+        if self.process.poll() is None:
+            os.killpg(self.process.pid, signal.SIGKILL)
         self.process.communicate()
         self.folder.cleanup()
         warm.cache_clear()
@@ -96,8 +98,10 @@ class Warm:
 
 @cache
 def warm() -> Warm:
-    """Return the program, imported once."""
-    return Warm()
+    """Return the program, imported once for all tests."""
+    started = Warm()
+    atexit.register(started.stop)
+    return started
 
 
 def affcli(*args: Arg, cwd: Path | None = None, **env: str) -> Ended:
