@@ -18,9 +18,12 @@ MOST_BEHAVIORS = 10_000_000
 MOST_ROBOTS = 100_000
 MOST_WORKERS = 256
 
+# readable=False: whether a file can be read is for those to say who read it, with their exit code.
 Database = Annotated[
     Path,
-    typer.Option("--db", envvar="AFFCLI_DB", help="The SQLite file.", metavar="FILE"),
+    typer.Option(
+        "--db", envvar="AFFCLI_DB", help="The SQLite file.", metavar="FILE", readable=False
+    ),
 ]
 DEFAULT_DATABASE = Path("affcli.db")
 
@@ -28,7 +31,9 @@ AsJson = Annotated[bool, typer.Option("--json", help="Write JSON to stdout.")]
 Seed = Annotated[int, typer.Option("--seed", help="0 to 2^63 - 1.", metavar="N")]
 Config = Annotated[
     Path | None,
-    typer.Option("--config", help="A TOML file of settings that differ.", metavar="FILE"),
+    typer.Option(
+        "--config", help="A TOML file of settings that differ.", metavar="FILE", readable=False
+    ),
 ]
 
 

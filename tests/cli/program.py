@@ -151,7 +151,7 @@ def executed(*args: Arg, **env: str) -> Ended:
 
 
 def started(*args: Arg, **env: str) -> subprocess.Popen[str]:
-    """Start the program beside the test, as a shell does."""
+    """Start the program beside the test, as a shell does: in a process group of its own."""
     pipe = subprocess.PIPE
     return subprocess.Popen(
         [*PROGRAM, *args],
@@ -160,6 +160,7 @@ def started(*args: Arg, **env: str) -> subprocess.Popen[str]:
         stdout=pipe,
         stderr=pipe,
         text=True,
+        start_new_session=True,
     )
 
 

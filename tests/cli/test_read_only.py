@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.program import ROOT, environment, names_in, one_printable_line
+from tests.cli.program import ROOT, Ended, environment, names_in, one_printable_line
 
 READING = (("report",), ("sql", "select count(*) from affordance"), ("db", "info"))
 WRITING = (
@@ -32,12 +32,8 @@ def public(learned: Path) -> Iterator[Path]:
         path.parent.chmod(0o755)
 
 
-@pytest.mark.parametrize("what", ["file", "folder"])
-def test_reading_works_and_writing_is_refused(what: str, public: Path) -> None:
-    public.chmod(0o444 if what == "file" else 0o666)
-    public.parent.chmod(0o777 if what == "file" else 0o555)
-    before = public.read_bytes()
-    commands = [[*args, "--db", str(public)] for args in (*READING, *WRITING)]
+def as_nobody(*commands: tuple[str, ...]) -> list[Ended]:
+    """Run commands, one after the other, as somebody who may not write."""
     ended = subprocess.run(
         [sys.executable, "-m", "tests.cli.unprivileged", json.dumps(commands)],
         cwd=ROOT,
@@ -48,35 +44,37 @@ def test_reading_works_and_writing_is_refused(what: str, public: Path) -> None:
         check=False,
     )
     assert (ended.returncode, ended.stderr) == (0, "")
-    results = [json.loads(line) for line in ended.stdout.splitlines()]
+    results = [Ended(*json.loads(line)) for line in ended.stdout.splitlines()]
     assert len(results) == len(commands)
-    for code, out, err in results[: len(READING)]:
-        assert (code, err) == (0, "")
-        assert out
-    for code, out, err in results[len(READING) :]:
-        assert (code, out) == (3, "")
-        line = one_printable_line(err)
+    return results
+
+
+@pytest.mark.parametrize("what", ["file", "folder"])
+def test_reading_works_and_writing_is_refused(what: str, public: Path) -> None:
+    public.chmod(0o444 if what == "file" else 0o666)
+    public.parent.chmod(0o777 if what == "file" else 0o555)
+    before = public.read_bytes()
+    results = as_nobody(*((*args, "--db", str(public)) for args in (*READING, *WRITING)))
+    for ended in results[: len(READING)]:
+        assert (ended.code, ended.err) == (0, "")
+        assert ended.out
+    for ended in results[len(READING) :]:
+        assert (ended.code, ended.out) == (3, "")
+        line = one_printable_line(ended.err)
         assert "the file or its folder is read-only; allow yourself to write there" in line
     assert public.read_bytes() == before
     assert names_in(public.parent) == [public.name]
 
 
 @pytest.mark.skipif(os.getuid() != 0, reason="only root can make a file that is another's")
-def test_a_file_that_may_not_be_read_is_named(public: Path) -> None:
+def test_what_may_not_be_read_is_named(public: Path) -> None:
+    """A database is exit 3, settings are exit 4."""
     public.chmod(0o000)
-    public.parent.chmod(0o755)
-    commands = [[*args, "--db", str(public)] for args in (*READING, WRITING[0])]
-    ended = subprocess.run(
-        [sys.executable, "-m", "tests.cli.unprivileged", json.dumps(commands)],
-        cwd=ROOT,
-        env=environment(),
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
-    assert (ended.returncode, ended.stderr) == (0, "")
-    for line in ended.stdout.splitlines():
-        code, out, err = json.loads(line)
-        assert (code, out) == (3, "")
-        assert "access is denied" in one_printable_line(err)
+    databases = [(*args, "--db", str(public)) for args in (*READING, WRITING[0])]
+    settings = (*WRITING[0], "--config", str(public))
+    *results, last = as_nobody(*databases, settings)
+    for ended in results:
+        assert (ended.code, ended.out) == (3, "")
+        assert "denied" in one_printable_line(ended.err)
+    assert (last.code, last.out) == (4, "")
+    assert "Permission denied; give a TOML file that can be read" in one_printable_line(last.err)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from affcli.config import Settings
+from affcli.config import Settings, settings_with
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.behavior import CONTRACT_ARM, BehaviorCall
@@ -182,6 +182,19 @@ def test_lost_affordances_are_tried_in_vain_and_die() -> None:
 
 def test_trials_with_a_whole_tool_know_of_no_lost_rows() -> None:
     assert all(step.lost is None for step in tried("t-hook", 1, 2).steps)
+
+
+def test_a_trial_whose_simulation_diverges_is_invalid_and_never_solved() -> None:
+    """A puck of next to no mass makes the engine give numbers that are not finite; the world goes
+    on to serve the next trial."""
+    weightless = settings_with({"puck": {"mass": 1e-300}}, "a test")
+    table, world = t_hook_table(), fresh_world(weightless)
+    outcomes = [
+        whole_trial(trial, weightless, table, world).end.outcome
+        for trial in trial_specs(WHOLE, "t-hook", "t-hook", 0, 0)
+    ]
+    assert outcomes.count(Outcome.INVALID) > 8
+    assert Outcome.SOLVED not in outcomes
 
 
 def test_there_are_4_goals_with_4_starts_each_from_the_table_as_learned() -> None:
