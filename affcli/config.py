@@ -1,7 +1,6 @@
 """All settings: typed, frozen defaults; overrides from TOML; canonical JSON for the record."""
 
 import json
-import math
 import tomllib
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
@@ -27,9 +26,16 @@ MAY_BE_ZERO = frozenset(
         "motion.grasp_time",
     }
 )
-AT_MOST = {"arm.waist_max_degrees": 90.0, "arm.elbow_max_degrees": 180.0}
-LARGEST = 1e6
-"""No length, time or count of this laboratory is larger; a number beyond it is a mistake."""
+AT_LEAST = {"physics.collision_slop": 1e-9, "physics.overlap_mended": 1e-6}
+AT_MOST = {
+    "arm.waist_max_degrees": 90.0,
+    "arm.elbow_max_degrees": 180.0,
+    "physics.overlap_mended": 1.0,
+    "sensor.position_noise": 10.0,
+    "sensor.color_noise": 255.0,
+}
+LARGEST, SMALLEST = 1e6, 1e-3
+"""No length, speed, time or count of this laboratory lies beyond them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +112,24 @@ def settings_with(overrides: dict[str, Any], source: str) -> Settings:
             workspace = replace(workspace, **{section: part})
         else:
             settings = replace(settings, **{section: part})
+    _check_together(workspace, settings.babbling, source)
     return replace(settings, workspace=workspace)
+
+
+def differences(text: str) -> str:
+    """Return in words how stored settings differ from the defaults: ``defaults``, or each key.
+
+    Args:
+        text: what `Settings.to_json` wrote.
+    """
+    own, usual = json.loads(text), _sections(Settings())
+    words = [
+        f"{section}.{key} = {value:g}"
+        for section, values in sorted(own.items())
+        for key, value in sorted(values.items())
+        if value != usual.get(section, {}).get(key)
+    ]
+    return ", ".join(words) or "defaults"
 
 
 def _sections(settings: Settings) -> dict[str, dict[str, Any]]:
@@ -136,13 +159,35 @@ def _number(path: str, value: object, kind: type, source: str) -> float | int:
         raise BadInputError(f"{source}: {path} = {one_line(value)} must be {wanted}")
     if kind is int and not isinstance(value, int):
         raise BadInputError(f"{source}: {path} = {value} must be {wanted}")
-    low_is_in = path in MAY_BE_ZERO
-    low = -LARGEST if path in MAY_BE_NEGATIVE else 0.0
+    least = 1 if kind is int else SMALLEST
+    low = 0.0 if path in MAY_BE_ZERO else AT_LEAST.get(path, least)
+    low = -LARGEST if path in MAY_BE_NEGATIVE else low
     high = AT_MOST.get(path, LARGEST)
-    fits = (low <= value if low_is_in else low < value) and value <= high
-    if not (fits and math.isfinite(value)):
-        bracket = "[" if low_is_in else "("
-        raise BadInputError(
-            f"{source}: {path} = {one_line(value)} must lie in {bracket}{low:g}, {high:g}]"
-        )
+    if not low <= value <= high:
+        raise BadInputError(f"{source}: {path} = {one_line(value)} must lie in [{low:g}, {high:g}]")
     return value if kind is int else float(value)
+
+
+def _check_together(workspace: Workspace, babbling: BabblingSettings, source: str) -> None:
+    """Refuse sizes that are each possible but not together."""
+    arm, tools, table = workspace.arm, workspace.tools, workspace.table
+    for lesser, less, greater, more in (
+        ("tools.part_width", tools.part_width, "tools.hook_length", tools.hook_length),
+        ("tools.part_width", tools.part_width, "tools.bar_reach", tools.bar_reach),
+        ("tools.hook_length", tools.hook_length, "tools.handle_length", tools.handle_length),
+        ("table.near", table.near, "table.far", table.far),
+        (
+            "babbling.offset_y_min",
+            babbling.offset_y_min,
+            "babbling.offset_y_max",
+            babbling.offset_y_max,
+        ),
+        (
+            *("arm.shoulder_min_degrees", arm.shoulder_min_degrees),
+            *("arm.shoulder_max_degrees", arm.shoulder_max_degrees),
+        ),
+    ):
+        if less >= more:
+            raise BadInputError(
+                f"{source}: {lesser} = {less:g} must be less than {greater} = {more:g}"
+            )

@@ -30,13 +30,17 @@ class BadInputError(AffcliError):
 
 
 class SimulationDivergedError(AffcliError):
-    """The physics produced a number that is not finite; the behavior counts for nothing."""
+    """The physics produced a number that is not finite: the settings are beyond it."""
 
-    exit_code = 1
+    exit_code = 4
 
 
 def one_line(text: object, limit: int = 200) -> str:
     """Return `text` as one printable line, so that an error can quote what a user wrote."""
-    start = str(text)[: limit + 1]
+    try:
+        start = str(text)[: limit + 1]
+    except (ValueError, RecursionError):
+        # A number of 100,000 digits, a table nested as deep: Python itself declines to write them.
+        start = f"({type(text).__name__} too large to show)"
     shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in start)
     return shown if len(shown) <= limit else shown[: limit - 3] + "..."

@@ -80,10 +80,7 @@ def learn(
         )
         return
     show(
-        *(
-            groups_table(learned.info.spec.tool, group)
-            for learned, group in zip(results, groups, strict=True)
-        )
+        *(groups_table(learned.info, group) for learned, group in zip(results, groups, strict=True))
     )
 
 

@@ -21,9 +21,14 @@ from affcli.errors import UsageError
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from affcli.core.task import GoalRegion
     from affcli.core.trial import StepRecord
     from affcli.lab.solving import SolvedTrial
     from affcli.store import LearningRunInfo, Store
+
+
+DISTANCES = ("distance_to_goal", "expected_distance_to_goal", "repositioning")
+"""What searches 3 and 4 weighed, in inches."""
 
 
 def solve(
@@ -52,6 +57,8 @@ def solve(
     if tool is not None:
         checked_tool(tool)
 
+    from affcli.config import settings_from_json
+    from affcli.core.task import goal_regions
     from affcli.lab.solving import SolvedStep
     from affcli.lab.solving import solve as solve_trials
     from affcli.report.trials import explain_trial, solve_table
@@ -61,6 +68,12 @@ def solve(
     steps: list[list[StepRecord]] = [[]]
     with open_store(database, create=False, write=True) as store:
         runs = learned_runs(store, tool, database)
+        regions = {
+            run.spec.tool: goal_regions(settings_from_json(run.spec.settings).workspace.layout)[
+                goal
+            ]
+            for run in runs
+        }
         for event in solve_trials(store, runs, goal, starts, seed, now):
             if isinstance(event, SolvedStep):
                 steps[-1].append(event.record)
@@ -68,9 +81,14 @@ def solve(
             trials.append(event)
             steps.append([])
             if explain and not as_json:
-                show(explain_trial(event.trial, event.end, steps[-2]))
+                show(explain_trial(event.trial, event.end, steps[-2], regions[event.trial.tool]))
     if as_json:
-        show_json([_as_json(*pair, explain) for pair in zip(trials, steps[:-1], strict=True)])
+        show_json(
+            [
+                _as_json(trial, taken, regions[trial.trial.tool] if explain else None)
+                for trial, taken in zip(trials, steps[:-1], strict=True)
+            ]
+        )
     else:
         show(solve_table(goal, [(t.trial, t.end) for t in trials]))
     return 0 if len(starts) > 1 or all(t.solved for t in trials) else 1
@@ -86,15 +104,20 @@ def learned_runs(store: "Store", tool: str | None, database: "Path") -> list["Le
     runs = [run for run in map(store.latest_run, names) if run is not None]
     if not runs:
         where = "" if database == DEFAULT_DATABASE else f" --db {database}"
+        only = " but by robots of a reproduction" if store.sessions("reproduce") else ""
         raise UsageError(
-            f"nothing learned with the {tool or 'tools'} in {database}; "
+            f"nothing learned with the {tool or 'tools'} in {database}{only}; "
             f"first run: affcli learn --tool {tool or 't-hook'}{where}"
         )
     return runs
 
 
-def _as_json(trial: "SolvedTrial", steps: list["StepRecord"], explain: bool) -> dict[str, Any]:
-    """Return one trial as JSON types; with its steps when they were asked for."""
+def _as_json(
+    trial: "SolvedTrial", steps: list["StepRecord"], goal: "GoalRegion | None"
+) -> dict[str, Any]:
+    """Return one trial as JSON types; with its steps when the goal is given to explain them by."""
+    from affcli.report.trials import distances
+
     spec, end = trial.trial, trial.end
     value: dict[str, Any] = {
         "tool": spec.tool,
@@ -104,7 +127,7 @@ def _as_json(trial: "SolvedTrial", steps: list["StepRecord"], explain: bool) -> 
         "steps": end.steps,
         "robot_seconds": end.clock,
     }
-    if explain:
+    if goal is not None:
         left = end.last_survivors
         value["rows_left_at_end"] = None if left is None else left._asdict()
         value["explain"] = [
@@ -114,6 +137,7 @@ def _as_json(trial: "SolvedTrial", steps: list["StepRecord"], explain: bool) -> 
                 "behavior": str(record.row.exploratory),
                 "rows_left": record.survivors._asdict(),
                 "placing": record.placing.status.value,
+                **dict(zip(DISTANCES, distances(record, goal), strict=True)),
                 "expected": [record.expected.dx, record.expected.dy],
                 "seen": [record.seen.dx, record.seen.dy],
                 "replicated": record.replicated,

@@ -14,8 +14,8 @@ Rows = NDArray[np.intp]
 
 COLOR_TOLERANCE = 30.0
 """Two colours are consistent when they differ by at most this much in RGB (Euclidean, 0 to 255).
-Choice: 15 standard deviations of the default sensor's colour noise, half the distance between the
-two most similar tools."""
+Choice: 15 standard deviations of the default sensor's colour noise, about a quarter of the distance
+between the two most similar tools."""
 
 
 class AffordanceTable:

@@ -88,14 +88,10 @@ class ConvexPolygon:
             px, py = point.x - a.x, point.y - a.y
             if ex * py - ey * px < 0.0:
                 inside = False
-            along = min(1.0, max(0.0, (px * ex + py * ey) / (ex * ex + ey * ey)))
+            squared = ex * ex + ey * ey
+            along = min(1.0, max(0.0, (px * ex + py * ey) / squared)) if squared > 0.0 else 0.0
             nearest = min(nearest, math.hypot(px - along * ex, py - along * ey))
         return 0.0 if inside else nearest
-
-
-def distance_to_union(polygons: Sequence[ConvexPolygon], point: Point) -> float:
-    """Return the distance from `point` to the union of `polygons` (in); 0 inside."""
-    return min(polygon.distance(point) for polygon in polygons)
 
 
 def near_any(polygons: Sequence[ConvexPolygon], point: Point, radius: float) -> bool:
@@ -111,4 +107,5 @@ def near_any(polygons: Sequence[ConvexPolygon], point: Point, radius: float) -> 
 
 def direction_degrees(dx: float, dy: float) -> float:
     """Return the direction of (dx, dy) in degrees in [0, 360): 0 is right, 90 is away."""
-    return math.degrees(math.atan2(dy, dx)) % 360.0
+    # A tiny negative angle plus 360 rounds to 360 itself, hence twice.
+    return math.degrees(math.atan2(dy, dx)) % 360.0 % 360.0

@@ -73,7 +73,7 @@ TOOL_COLORS: dict[ToolName, Color] = {
     ToolName("t-stick"): Color((230.0, 210.0, 40.0)),
     ToolName("t-hook"): Color((40.0, 160.0, 70.0)),
 }
-"""Each tool has one colour (§4); the paper does not say which. All lie over 60 apart in RGB."""
+"""Each tool has one colour (§4); the paper does not say which. All lie over 100 apart in RGB."""
 
 PUCK_COLOR = Color((240.0, 120.0, 20.0))
 """The attractor is an orange hockey puck (§4)."""

@@ -2,6 +2,7 @@
 
 from collections import Counter
 
+from affcli.config import differences
 from affcli.core.task import GOAL_NUMBERS
 from affcli.core.tool import TOOL_PARTS
 from affcli.core.trial import Outcome, Protocol
@@ -28,25 +29,35 @@ def reproduction_of(store: Store, session: int, robots: int) -> Reproduction:
             broken[count.robot] += count.solved
     failures, trials = _failures(store, [session])
     lost = sum(use.tries for use in store.row_uses(session) if use.lost)
-    return Reproduction(robots, cells, broken, failures, trials, lost)
+    (info,) = (s for s in store.sessions("reproduce") if s.id == session)
+    words = differences(info.settings)
+    return Reproduction(robots, cells, broken, failures, trials, lost, session, info.seed, words)
 
 
 def overview_of(store: Store) -> Overview:
-    """Return what the database holds: learned tools, trials, the latest reproduction."""
-    learned = [(run, store.behavior_groups(run.id)) for run in store.learning_runs()]
-    solves = store.sessions("solve")
-    own: dict[tuple[str, int], tuple[int, int]] = {}
-    for session in solves:
-        for count in store.success_counts(session.id):
-            solved, tried = own.get((count.tool, count.goal), (0, 0))
-            own[count.tool, count.goal] = (solved + count.solved, tried + count.trials)
-    breakings = [_breaking(store, session) for session in store.sessions("break-tool")]
-    failures, trials = _failures(store, [s.id for s in (*solves, *store.sessions("break-tool"))])
-    reproduction = None
-    whole = [s for s in store.sessions("reproduce") if s.status == "done"]
-    if whole:
-        reproduction = reproduction_of(store, whole[-1].id, whole[-1].robots)
-    return Overview(learned, own, [b for b in breakings if b], failures, trials, reproduction)
+    """Return what the database holds: learned tools, trials, finished reproductions."""
+    learned = [
+        (run, differences(run.spec.settings), store.behavior_groups(run.id))
+        for run in store.learning_runs()
+    ]
+    solved: dict[tuple[int, str, int], tuple[int, int]] = {}
+    for trial in store.outcomes(kind="solve"):
+        key = (trial.run_id, trial.tool, trial.goal)
+        good, tried = solved.get(key, (0, 0))
+        solved[key] = (good + (trial.outcome is Outcome.SOLVED), tried + 1)
+    latest: dict[tuple[int, int, str, str], Breaking] = {}
+    for session in store.sessions("break-tool"):
+        breaking = _breaking(store, session)
+        if breaking is not None:
+            latest[breaking.run, breaking.seed, breaking.tool, breaking.shape] = breaking
+    counted = [s.id for s in store.sessions("solve")] + [b.session for b in latest.values()]
+    failures, trials = _failures(store, counted)
+    reproductions = [
+        reproduction_of(store, session.id, session.robots)
+        for session in store.sessions("reproduce")
+        if session.status == "done"
+    ]
+    return Overview(learned, solved, list(latest.values()), failures, trials, reproductions)
 
 
 def _failures(store: Store, sessions: list[int]) -> tuple[dict[str, int], int]:
@@ -79,6 +90,7 @@ def _breaking(store: Store, session: SessionInfo) -> Breaking | None:
     broken = next(r for r in results if r.protocol is Protocol.TOOL_ADAPTATION)
     return Breaking(
         session.id,
+        broken.run_id,
         session.seed,
         broken.tool,
         broken.shape,

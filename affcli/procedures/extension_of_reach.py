@@ -50,22 +50,6 @@ def extension_of_reach(
     Returns:
         How the trial ended.
     """
-    try:
-        return (yield from _steps(robot, sensor, experimenter, table, binding, limits))
-    except SimulationDivergedError:
-        # Kept as a trial of its own kind, which counts neither as solved nor as failed.
-        return TrialEnd(Outcome.INVALID, steps=0, clock=robot.clock)
-
-
-def _steps(
-    robot: Robot,
-    sensor: Sensor,
-    experimenter: Experimenter,
-    table: AffordanceTable,
-    binding: BehaviorCall,
-    limits: TrialLimits,
-) -> Generator[StepRecord, None, TrialEnd]:
-    """Yield the steps of a trial until it ends (see `extension_of_reach`)."""
     robot.execute(binding, None)
     seen = sensor.observe()
     goal = sensor.observe_goal()
@@ -74,7 +58,11 @@ def _steps(
             return TrialEnd(Outcome.SOLVED, number - 1, robot.clock)
         if experimenter.attractor_out_of_reach():
             return TrialEnd(Outcome.ATTRACTOR_OUT_OF_REACH, number - 1, robot.clock)
-        step = _step(number, robot, sensor, table, seen, goal)
+        try:
+            step = _step(number, robot, sensor, table, seen, goal)
+        except SimulationDivergedError:
+            # Kept as a trial of its own kind, which counts neither as solved nor as failed.
+            return TrialEnd(Outcome.INVALID, number - 1, robot.clock)
         if isinstance(step, TrialEnd):
             return step
         yield step

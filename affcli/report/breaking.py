@@ -149,7 +149,7 @@ _LABELS = (
     "tries replicated",
     "tries on lost affordances",
     "trials with such tries",
-    "rows excluded",
+    "exclusions of rows",
 )
 
 

@@ -69,11 +69,11 @@ class LearnedTool(Protocol):
         """Robot time so far (s)."""
 
 
-def groups_table(tool: str, groups: Iterable[BehaviorGroup]) -> Sheet:
+def groups_table(run: LearnedTool, groups: Iterable[BehaviorGroup]) -> Sheet:
     """Return the behavior-distance groups: tried, rows, mean movement and direction."""
     table = Sheet(
         ("behavior", "tried", "rows", "inches", "degrees"),
-        title=f"What the {tool} affords, by behavior",
+        title=f"Run {run.id}: what the {run.spec.tool} affords, by behavior",
         caption="mean movement of the rows; degrees: 0 right, 90 away from the robot, 180 left",
         left=("behavior",),
     )
@@ -95,14 +95,15 @@ def _direction(group: BehaviorGroup) -> str:
     return str(whole_degrees(direction_degrees(group.mean_dx, group.mean_dy)))
 
 
-def learned_table(tools: Sequence[LearnedTool]) -> Sheet:
-    """Return the learning runs: tool, seed, robot time, behaviors, rows, resets."""
+def learned_table(tools: Sequence[tuple[LearnedTool, str]]) -> Sheet:
+    """Return the learning runs, each with how its settings differ from the defaults."""
     table = Sheet(
-        ("run", "tool", "seed", "robot time", "behaviors", "rows", "resets"),
+        ("run", "tool", "seed", "robot time", "behaviors", "rows", "resets", "settings"),
         title="Tools learned",
-        left=("tool",),
+        caption="resets: the attractor put back by hand",
+        left=("tool", "settings"),
     )
-    for run in tools:
+    for run, settings in tools:
         unfinished = "" if run.status == "done" else " (unfinished)"
         table.add(
             str(run.id),
@@ -112,6 +113,7 @@ def learned_table(tools: Sequence[LearnedTool]) -> Sheet:
             str(run.behaviors),
             str(run.rows),
             str(run.resets),
+            settings,
         )
     return table
 

@@ -49,6 +49,7 @@ class Breaking:
     """One session in which a tool broke: the broken tool's trials and the whole one's."""
 
     session: int
+    run: int
     seed: int
     tool: str
     shape: str
@@ -61,37 +62,37 @@ class Overview:
     """What a database holds.
 
     Args:
-        learned: learning runs that stand for themselves, with their behavior groups.
-        solved: (solved, tried) by (tool, goal), over all ``solve`` sessions.
-        breakings: the ``break-tool`` sessions, oldest first.
+        learned: learning runs that stand for themselves, each with how its settings differ from the
+            defaults, and its behavior groups.
+        solved: (solved, tried) by (learning run, tool, goal), over all ``solve`` sessions.
+        breakings: the ``break-tool`` sessions, oldest first; of the same one done again, the last.
         failures: how often each kind of failure occurred in these sessions.
         trials: all trials of these sessions.
-        reproduction: the latest finished one; None when there is none.
+        reproductions: the finished ones, oldest first.
     """
 
-    learned: Sequence[tuple[LearnedTool, Sequence[BehaviorGroup]]]
-    solved: Mapping[tuple[str, int], tuple[int, int]]
+    learned: Sequence[tuple[LearnedTool, str, Sequence[BehaviorGroup]]]
+    solved: Mapping[tuple[int, str, int], tuple[int, int]]
     breakings: Sequence[Breaking]
     failures: Mapping[str, int]
     trials: int
-    reproduction: Reproduction | None
+    reproductions: Sequence[Reproduction]
 
 
 def overview_tables(overview: Overview) -> list[RenderableType]:
     """Return the tables, without those that would be empty."""
     shown: list[RenderableType] = []
     if overview.learned:
-        shown.append(learned_table([run for run, _ in overview.learned]))
-        shown += [groups_table(run.spec.tool, groups) for run, groups in overview.learned]
+        shown.append(learned_table([(run, settings) for run, settings, _ in overview.learned]))
+        shown += [groups_table(run, groups) for run, _, groups in overview.learned]
     if overview.solved:
-        shown.append(counts_table("Extension of reach: this robot", overview.solved))
+        shown.append(counts_table(overview.solved))
     if overview.breakings:
         shown.append(_breakings_table(overview.breakings))
     if overview.trials:
         shown.append(failures_table(overview.failures, overview.trials))
-    if overview.reproduction is not None:
-        again = overview.reproduction
-        shown += reproduction_tables(again)
+    for reproduction in overview.reproductions:
+        shown += reproduction_tables(reproduction)
     if not shown:
         shown.append(Text("nothing learned yet; first run: affcli learn --tool t-hook"))
     return shown
@@ -100,13 +101,14 @@ def overview_tables(overview: Overview) -> list[RenderableType]:
 def _breakings_table(breakings: Sequence[Breaking]) -> Sheet:
     """Return the broken-tool sessions beside the paper."""
     table = Sheet(
-        ("tool", "became", "broken", "whole", "tries on lost", "rows excluded"),
+        ("run", "tool", "became", "broken", "whole", "tries on lost", "rows excluded"),
         title="Tools that broke",
         caption=f"solved (mean steps of the solved); paper: {BROKEN_TOOL} of 16 both",
         left=("tool", "became"),
     )
     for breaking in breakings:
         table.add(
+            str(breaking.run),
             breaking.tool,
             breaking.shape,
             _solved(breaking.broken),
@@ -125,15 +127,17 @@ def _solved(figures: ProtocolFigures) -> str:
 
 def overview_json(overview: Overview) -> dict[str, Any]:
     """Return what `overview_tables` shows as JSON types."""
-    again = overview.reproduction
     return {
-        "learned": [{**run_json(run), "groups": groups_json(g)} for run, g in overview.learned],
+        "learned": [
+            {**run_json(run), "settings": settings, "groups": groups_json(groups)}
+            for run, settings, groups in overview.learned
+        ],
         "solved": [
-            {"tool": tool, "goal": goal, "solved": solved, "tried": tried}
-            for (tool, goal), (solved, tried) in overview.solved.items()
+            {"run": run, "tool": tool, "goal": goal, "solved": solved, "tried": tried}
+            for (run, tool, goal), (solved, tried) in overview.solved.items()
         ],
         "broken": [asdict(breaking) for breaking in overview.breakings],
         "failures": dict(overview.failures),
         "trials": overview.trials,
-        "reproduction": None if again is None else reproduction_json(again),
+        "reproductions": [reproduction_json(again) for again in overview.reproductions],
     }

@@ -18,6 +18,3 @@ TOTAL = sum(map(sum, EXTENSION_OF_REACH.values()))
 
 BROKEN_TOOL = 16
 """16 of 16 with the T-hook that had become an L-hook (§7.2)."""
-
-TRIALS_A_CELL = 4
-"""One for each start."""

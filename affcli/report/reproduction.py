@@ -10,6 +10,9 @@ from affcli.report.paper import BROKEN_TOOL, EXTENSION_OF_REACH, TOTAL
 from affcli.report.sheet import Sheet
 from affcli.report.statistics import Spread
 
+ENOUGH_ROBOTS = 20
+"""With fewer, the central 95 % of robots is hardly more than their range: nothing is marked."""
+
 
 @dataclass(frozen=True, slots=True)
 class Reproduction:
@@ -22,6 +25,9 @@ class Reproduction:
         failures: how often each kind of failure occurred, over both experiments.
         trials: all trials of both experiments.
         tries_on_lost: tries on lost affordances with the broken tool, over all its trials.
+        session: its number in the database.
+        seed: shared by its robots.
+        settings: how its settings differ from the defaults, in words.
     """
 
     robots: int
@@ -30,6 +36,9 @@ class Reproduction:
     failures: Mapping[str, int]
     trials: int
     tries_on_lost: int
+    session: int
+    seed: int
+    settings: str
 
     @property
     def totals(self) -> list[int]:
@@ -53,6 +62,9 @@ def reproduction_json(result: Reproduction) -> dict[str, Any]:
             )
     return {
         "robots": result.robots,
+        "seed": result.seed,
+        "session": result.session,
+        "settings": result.settings,
         "cells": cells,
         "total": _against(result.totals, TOTAL),
         "broken": _against(result.broken, BROKEN_TOOL),
@@ -91,11 +103,12 @@ def _cells_table(result: Reproduction) -> Sheet:
     table = Sheet(
         columns,
         title=f"Extension of reach: paper|mean of {robots} [central 95 %]",
-        caption="successes of 4 starts; ! = the paper's count lies outside",
+        caption=f"successes of 4 starts; {_note(result.robots)}\n"
+        f"session {result.session}, seed {result.seed}, settings: {result.settings}",
         left=columns,
     )
     for tool, counts in EXTENSION_OF_REACH.items():
-        cells = [_cell(result.cells[tool, g], p) for g, p in enumerate(counts, start=1)]
+        cells = [_cell(result.cells[tool, goal], paper) for goal, paper in enumerate(counts, 1)]
         table.add(tool, *cells)
     return table
 
@@ -103,7 +116,7 @@ def _cells_table(result: Reproduction) -> Sheet:
 def _totals_table(result: Reproduction) -> Sheet:
     """Return the total and the broken tool's successes beside the paper's."""
     table = Sheet(
-        ("all trials", "paper", "mean", "95 % of the mean", "central 95 %"),
+        ("all trials", "paper", "mean", "95 % interval of the mean", "central 95 %"),
         left=("all trials",),
     )
     for name, counts, paper in (
@@ -112,7 +125,7 @@ def _totals_table(result: Reproduction) -> Sheet:
     ):
         spread = Spread.of(counts)
         low, high = spread.mean_ci
-        robots = _marked(f"[{spread.low},{spread.high}]", inside=spread.holds(paper))
+        robots = _marked(f"[{spread.low},{spread.high}]", counts, paper)
         table.add(name, str(paper), f"{spread.mean:.1f}", f"{low:.1f} to {high:.1f}", robots)
     return table
 
@@ -121,12 +134,20 @@ def _cell(counts: Sequence[int], paper: int) -> Text:
     """Return one cell: the paper's count, our mean, the central interval."""
     spread = Spread.of(counts)
     words = f"{paper}|{spread.mean:.1f} [{spread.low},{spread.high}]"
-    return _marked(words, inside=spread.holds(paper))
+    return _marked(words, counts, paper)
 
 
-def _marked(words: str, *, inside: bool) -> Text:
-    """Return the words of an interval, marked when the paper's count is not inside."""
-    return Text(words) if inside else Text(f"{words}!", style="bold red")
+def _marked(words: str, counts: Sequence[int], paper: int) -> Text:
+    """Return the words of an interval, marked when enough robots leave the paper's count out."""
+    outside = len(counts) >= ENOUGH_ROBOTS and not Spread.of(counts).holds(paper)
+    return Text(f"{words}!", style="bold red") if outside else Text(words)
+
+
+def _note(robots: int) -> str:
+    """Return what the mark means, or that there are too few robots for one."""
+    if robots < ENOUGH_ROBOTS:
+        return f"too few robots for intervals: give --robots {ENOUGH_ROBOTS} or more"
+    return "! = the paper's count lies outside"
 
 
 def failures_table(failures: Mapping[str, int], trials: int) -> Sheet:
@@ -136,9 +157,11 @@ def failures_table(failures: Mapping[str, int], trials: int) -> Sheet:
         failures: how often each kind of failure occurred.
         trials: how many trials there were, the solved ones included.
     """
-    table = Sheet(("kind", "trials", "share of all"), title="Failures by kind", left=("kind",))
+    table = Sheet(
+        ("kind", "trials", "share of all trials"), title="Failures by kind", left=("kind",)
+    )
     for kind, count in sorted(failures.items(), key=lambda item: (-item[1], item[0])):
         table.add(kind, str(count), f"{100 * count / trials:.1f} %")
     if not failures:
-        table.add("none", "0", "0.0 %")
+        table.caption = f"no failures in {trials} trials"
     return table

@@ -79,7 +79,9 @@ class Sheet:
         table = Table(box=box.SIMPLE_HEAD, show_edge=False, padding=(0, GAP - 1, 0, 0))
         table.pad_edge = False
         for heading, width in zip(self.columns, widths, strict=True):
-            table.add_column(heading, justify="left" if heading in self.left else "right")
+            justify = "left" if heading in self.left else "right"
+            # Folded, where a word of double-width letters comes out a column too wide.
+            table.add_column(heading, justify=justify, overflow="fold")  # type: ignore[arg-type]
             table.columns[-1].width = width
         for row in self.rows:
             table.add_row(*map(_text, row))

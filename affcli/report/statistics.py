@@ -47,13 +47,3 @@ def quantile(counts: Sequence[int], share: float) -> int:
     # that 0.025 of 200 robots is 5 and not 5.000000000000001.
     needed = math.ceil(round(share * len(ordered), 9))
     return ordered[max(needed, 1) - 1]
-
-
-def wilson(successes: int, trials: int) -> tuple[float, float]:
-    """Return Wilson's 95 % interval of a share; (0, 1) without trials."""
-    if trials == 0:
-        return 0.0, 1.0
-    p, z2 = successes / trials, Z95**2
-    middle = (p + z2 / (2 * trials)) / (1 + z2 / trials)
-    half = Z95 / (1 + z2 / trials) * math.sqrt(p * (1 - p) / trials + z2 / (4 * trials**2))
-    return max(0.0, middle - half), min(1.0, middle + half)

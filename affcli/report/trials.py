@@ -1,5 +1,6 @@
 """Tables of testing trials of one robot, and the words for a step (§6.2, §7.1)."""
 
+import math
 from collections.abc import Mapping, Sequence
 
 from rich.console import Group, RenderableType
@@ -8,13 +9,16 @@ from rich.text import Text
 
 from affcli.core.geometry import direction_degrees
 from affcli.core.observation import Movement
+from affcli.core.task import GoalRegion
 from affcli.core.trial import Outcome, StepRecord, Survivors, TrialEnd, TrialSpec
 from affcli.report.learning import whole_degrees
 from affcli.report.paper import EXTENSION_OF_REACH
 from affcli.report.sheet import Sheet
 
 
-def explain_trial(spec: TrialSpec, end: TrialEnd, steps: Sequence[StepRecord]) -> RenderableType:
+def explain_trial(
+    spec: TrialSpec, end: TrialEnd, steps: Sequence[StepRecord], goal: GoalRegion
+) -> RenderableType:
     """Return how a trial ended, and step by step why each row was chosen and what came of it."""
     solved = end.outcome is Outcome.SOLVED
     head = Text(f"{spec.tool}, goal {spec.goal}, start {spec.start}: ")
@@ -25,7 +29,7 @@ def explain_trial(spec: TrialSpec, end: TrialEnd, steps: Sequence[StepRecord]) -
         lines.append(
             _indented(2, f"step {step.number}: row {step.row.step}, {step.row.exploratory}")
         )
-        lines += [_indented(4, line) for line in _step_lines(step)]
+        lines += [_indented(4, line) for line in _step_lines(step, goal)]
     if end.last_survivors is not None:
         lines.append(_indented(2, f"rows left: {_survivors(end.last_survivors)}"))
     return Group(*lines, "")
@@ -36,9 +40,24 @@ def _indented(by: int, line: str) -> Padding:
     return Padding(Text(line), (0, 0, 0, by), expand=False)
 
 
-def _step_lines(step: StepRecord) -> tuple[str, ...]:
-    """Return the rows left by each search, the movements, and the probability."""
+def distances(step: StepRecord, goal: GoalRegion) -> tuple[float, float, float]:
+    """Return what searches 3 and 4 weighed (in).
+
+    Returns:
+        How far the attractor was seen from the goal's centre, how far the row expects to leave it,
+        and how far the wrist travelled to its place.
+    """
+    x, y = step.start.object_position
+    now = math.dist((x, y), goal.center)
+    then = math.dist((x + step.expected.dx, y + step.expected.dy), goal.center)
+    return now, then, math.dist(step.placing.wrist_start, step.placing.wrist_end)
+
+
+def _step_lines(step: StepRecord, goal: GoalRegion) -> tuple[str, ...]:
+    """Return the rows left by each search, why this one, the movements, and the probability."""
     row = step.row
+    now, then, travel = distances(step, goal)
+    x, y = step.start.object_position
     verdict = "replicated" if step.replicated else "not replicated"
     if step.execution is None:
         verdict = f"{step.placing.status}, counted as a failure"
@@ -47,7 +66,9 @@ def _step_lines(step: StepRecord) -> tuple[str, ...]:
     before = f"{row.times_successful}/{row.times_used}"
     after = f"{step.times_successful_after}/{step.times_used_after}"
     return (
+        f"attractor at ({x:.1f}, {y:.1f}), {now:.1f} in from the goal's centre",
         f"rows left: {_survivors(step.survivors)}, 1 chosen",
+        f"chosen for least re-positioning, {travel:.1f} in; should end {then:.1f} in from there",
         f"expected {_movement(step.expected)}, seen {_movement(step.seen)}: {verdict}",
         f"probability {before} -> {after}",
     )
@@ -88,25 +109,24 @@ def solve_table(goal: int, ends: Sequence[tuple[TrialSpec, TrialEnd]]) -> Sheet:
     return table
 
 
-def counts_table(title: str, solved: Mapping[tuple[str, int], tuple[int, int]]) -> Sheet:
-    """Return successes of one robot by tool and goal beside the paper's.
+def counts_table(solved: Mapping[tuple[int, str, int], tuple[int, int]]) -> Sheet:
+    """Return successes of single robots by learning run and goal beside the paper's.
 
     Args:
-        title: of the table.
-        solved: (solved, tried) by (tool, goal).
+        solved: (solved, tried) by (learning run, tool, goal).
     """
     table = Sheet(
-        ("tool", "goal 1", "goal 2", "goal 3", "goal 4"),
-        title=title,
+        ("run", "tool", "goal 1", "goal 2", "goal 3", "goal 4"),
+        title="Extension of reach, by learning run",
         caption="solved/tried|the paper's successes of 4",
         left=("tool",),
     )
-    for tool in dict.fromkeys(tool for tool, _ in solved):
+    for run, tool in dict.fromkeys((run, tool) for run, tool, _ in solved):
         paper = EXTENSION_OF_REACH.get(tool, (None,) * 4)
         cells = []
         for goal in (1, 2, 3, 4):
-            good, tried = solved.get((tool, goal), (0, 0))
+            good, tried = solved.get((run, tool, goal), (0, 0))
             beside = "-" if paper[goal - 1] is None else str(paper[goal - 1])
             cells.append(f"{good}/{tried}|{beside}" if tried else f"-|{beside}")
-        table.add(tool, *cells)
+        table.add(str(run), tool, *cells)
     return table

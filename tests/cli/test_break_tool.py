@@ -83,7 +83,7 @@ def test_the_tables_stand_beside_the_paper(learned: Path) -> None:
     comparison, excluded = ended.out.split("\n\n")
     assert comparison.startswith("The broken tool beside the whole one\n")
     labels = ["solved", "mean steps of the solved", "tries replicated"]
-    labels += ["tries on lost affordances", "trials with such tries", "rows excluded"]
+    labels += ["tries on lost affordances", "trials with such tries", "exclusions of rows"]
     for label in labels:
         assert f"\n{label} " in comparison
     assert comparison.splitlines()[-1].split()[-6:] == ["16", "of", "16", "16", "of", "16"]

@@ -22,7 +22,7 @@ def test_it_says_what_it_did_and_shows_the_groups(tmp_path: Path) -> None:
     assert message.startswith("learned stick (run 1, seed 0): ")
     assert "60 behaviors" in message
     title, headings, _, *table, caption = ended.out.splitlines()
-    assert title == "What the stick affords, by behavior"
+    assert title == "Run 1: what the stick affords, by behavior"
     assert headings.split() == ["behavior", "tried", "rows", "inches", "degrees"]
     assert caption.startswith("mean movement of the rows; degrees: ")
     tried = dict(line.rsplit(maxsplit=4)[:2] for line in table)
@@ -113,7 +113,7 @@ def all_well(ended: list[Ended]) -> None:
     """Check that processes side by side all ended well."""
     assert [one.code for one in ended] == [0] * len(ended)
     for one in ended:
-        assert "What the stick affords" in one.out
+        assert "what the stick affords" in one.out
         assert len(one.err.splitlines()) == 1
 
 

@@ -21,14 +21,14 @@ def test_an_empty_database_names_the_first_command(empty: Path) -> None:
         "broken": [],
         "failures": {},
         "trials": 0,
-        "reproduction": None,
+        "reproductions": [],
     }
 
 
 LEARNED = [
     "Tools learned",
-    "What the t-hook affords, by behavior",
-    "What the stick affords, by behavior",
+    "Run 1: what the t-hook affords, by behavior",
+    "Run 2: what the stick affords, by behavior",
 ]
 
 
@@ -69,7 +69,7 @@ def test_after_a_reproduction(reproduced: Path, leisurely: Path) -> None:
     assert done("report", "--db", reproduced).out == done(*again).out
     value = done("report", "--json", "--db", reproduced).json
     assert value["learned"] == []
-    assert value["reproduction"] == done(*again, "--json").json
+    assert value["reproductions"] == [done(*again, "--json").json]
 
 
 def test_reading_changes_nothing(used: Path) -> None:

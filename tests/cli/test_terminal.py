@@ -160,7 +160,7 @@ def test_a_dumb_terminal_gets_no_bar(tmp_path: Path) -> None:
     code, shown = on_terminal(*LEARN, "--db", tmp_path / "a.db", TERM="dumb")
     assert code == 0
     assert not ESCAPE.search(shown)
-    assert "What the stick affords, by behavior\n" in shown
+    assert "Run 1: what the stick affords, by behavior\n" in shown
 
 
 def test_markup_in_names_is_only_text(tmp_path: Path) -> None:

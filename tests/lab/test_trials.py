@@ -1,6 +1,7 @@
 """Testing trials: the whole tool and the broken one (§7.1, §7.2)."""
 
 import math
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 
@@ -8,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from affcli.config import Settings, settings_with
+from affcli.config import Settings
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.behavior import CONTRACT_ARM, BehaviorCall
@@ -187,7 +188,9 @@ def test_trials_with_a_whole_tool_know_of_no_lost_rows() -> None:
 def test_a_trial_whose_simulation_diverges_is_invalid_and_never_solved() -> None:
     """A puck of next to no mass makes the engine give numbers that are not finite; the world goes
     on to serve the next trial."""
-    weightless = settings_with({"puck": {"mass": 1e-300}}, "a test")
+    workspace = Settings().workspace
+    puck = replace(workspace.puck, mass=1e-300)
+    weightless = Settings(workspace=replace(workspace, puck=puck))
     table, world = t_hook_table(), fresh_world(weightless)
     outcomes = [
         whole_trial(trial, weightless, table, world).end.outcome

@@ -1,12 +1,12 @@
 """Pushes that the tests of this folder share: drawn from a seed, all of them touching the puck."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from affcli.core.geometry import ConvexPolygon, Point, Pose, distance_to_union
+from affcli.core.geometry import ConvexPolygon, Point, Pose
 from affcli.core.tool import paper_tools
 from affcli.core.workspace import Workspace
 from affcli.simulation.contact import travel_to_contact
@@ -72,6 +72,11 @@ FORKS: dict[str, tuple[ConvexPolygon, ...]] = {
 }
 """Shapes that, pushed ahead, hold the puck with two contacts at once, both loaded."""
 SHAPES = PAPER_SHAPES | INCLINED_SHAPES | FORKS
+
+
+def distance_to_union(polygons: Sequence[ConvexPolygon], point: Point) -> float:
+    """Return the distance from `point` to the union of `polygons` (in); 0 inside."""
+    return min(polygon.distance(point) for polygon in polygons)
 
 
 @dataclass(frozen=True, slots=True)

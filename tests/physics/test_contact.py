@@ -8,9 +8,9 @@ import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from affcli.core.geometry import ConvexPolygon, Point, distance_to_union
+from affcli.core.geometry import ConvexPolygon, Point
 from affcli.simulation.contact import travel_to_contact
-from tests.physics.pushes import DIRECTIONS, RADIUS, SHAPES
+from tests.physics.pushes import DIRECTIONS, RADIUS, SHAPES, distance_to_union
 from tests.physics.quasi_static import Array
 
 tools = st.sampled_from(tuple(SHAPES.values()))

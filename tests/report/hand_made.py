@@ -1,6 +1,6 @@
 """Small records made by hand, so that what the tables must say is known beforehand."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from affcli.core.affordance import Affordance
 from affcli.core.behavior import (
@@ -173,14 +173,30 @@ FOUR_ROBOTS = Reproduction(
     failures={"no row left": 9, "attractor out of reach": 40, "step limit": 9},
     trials=384,
     tries_on_lost=123,
+    session=5,
+    seed=1000,
+    settings="defaults",
 )
 
+MANY_ROBOTS = replace(
+    FOUR_ROBOTS,
+    robots=20,
+    cells={cell: list(counts) * 5 for cell, counts in FOUR_ROBOTS.cells.items()},
+    broken=[14, 15, 15, 15] * 5,
+    settings="friction.tool_puck = 0.45",
+)
+"""Enough robots for intervals; the paper's 16 with the broken tool and 69 of 80 lie outside."""
+
 OVERVIEW = Overview(
-    learned=[(RUNS[0], GROUPS), (RUNS[1], ())],
-    solved={("t-hook", 1): (3, 4), ("t-hook", 4): (12, 16), ("stick", 1): (0, 4)},
+    learned=[
+        (RUNS[0], "defaults", GROUPS),
+        (RUNS[1], "sensor.position_noise = 0.12", ()),
+    ],
+    solved={(1, "t-hook", 1): (3, 4), (1, "t-hook", 4): (12, 16), (2, "stick", 1): (0, 4)},
     breakings=[
         Breaking(
             2,
+            1,
             0,
             "t-hook",
             "l-hook",
@@ -189,6 +205,7 @@ OVERVIEW = Overview(
         ),
         Breaking(
             3,
+            7,
             1,
             "t-stick",
             "stick",
@@ -198,5 +215,5 @@ OVERVIEW = Overview(
     ],
     failures={"attractor out of reach": 5, "no row left": 1},
     trials=56,
-    reproduction=FOUR_ROBOTS,
+    reproductions=[FOUR_ROBOTS],
 )

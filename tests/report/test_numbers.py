@@ -8,7 +8,7 @@ from affcli.core.geometry import Point
 from affcli.report.breaking import Tally, broken_json, dead_rows
 from affcli.report.learning import clock, groups_json, run_json, summary, whole_degrees
 from affcli.report.overview import overview_json
-from affcli.report.paper import BROKEN_TOOL, EXTENSION_OF_REACH, TOTAL, TRIALS_A_CELL
+from affcli.report.paper import BROKEN_TOOL, EXTENSION_OF_REACH, TOTAL
 from affcli.report.reproduction import reproduction_json
 from tests.report.hand_made import BROKEN, FOUR_ROBOTS, GROUPS, OVERVIEW, RUNS, WHOLE, Run
 
@@ -19,7 +19,7 @@ def test_the_papers_table() -> None:
     assert [sum(counts) for counts in EXTENSION_OF_REACH.values()] == [10, 14, 15, 14, 16]
     columns = zip(*EXTENSION_OF_REACH.values(), strict=True)
     assert [sum(counts) for counts in columns] == [15, 14, 20, 20]
-    assert len(EXTENSION_OF_REACH) * 4 * TRIALS_A_CELL == 80
+    assert len(EXTENSION_OF_REACH) * 4 * 4 == 80
     assert BROKEN_TOOL == 16
 
 
@@ -86,9 +86,15 @@ def test_reproduction_json() -> None:
 def test_overview_json_is_json() -> None:
     value = json.loads(json.dumps(overview_json(OVERVIEW), allow_nan=False))
     assert [run["status"] for run in value["learned"]] == ["done", "running"]
-    assert value["solved"][0] == {"tool": "t-hook", "goal": 1, "solved": 3, "tried": 4}
+    assert value["solved"][0] == {
+        "run": 1,
+        "tool": "t-hook",
+        "goal": 1,
+        "solved": 3,
+        "tried": 4,
+    }
     assert value["broken"][1]["broken"]["mean_steps"] is None
-    assert value["reproduction"]["robots"] == 4
+    assert [again["robots"] for again in value["reproductions"]] == [4]
 
 
 def test_groups_and_runs_json() -> None:

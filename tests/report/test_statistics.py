@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from affcli.report.statistics import HIGH, LOW, Spread, quantile, wilson
+from affcli.report.statistics import HIGH, LOW, Spread, quantile
 
 successes = st.lists(st.integers(0, 80), min_size=1, max_size=250)
 
@@ -66,22 +66,3 @@ def test_one_robot_has_no_spread() -> None:
 def test_no_robots_are_an_error() -> None:
     with pytest.raises(ValueError, match="mean requires at least one data point"):
         Spread.of([])
-
-
-@given(st.integers(1, 2000).flatmap(lambda n: st.tuples(st.integers(0, n), st.just(n))))
-def test_wilson_is_scipys(counts: tuple[int, int]) -> None:
-    solved, trials = counts
-    theirs = stats.binomtest(solved, trials).proportion_ci(0.95, method="wilson")
-    assert wilson(solved, trials) == pytest.approx((theirs.low, theirs.high), abs=1e-9)
-
-
-@given(st.integers(1, 2000).flatmap(lambda n: st.tuples(st.integers(0, n), st.just(n))))
-def test_wilson_holds_the_share(counts: tuple[int, int]) -> None:
-    solved, trials = counts
-    low, high = wilson(solved, trials)
-    assert 0.0 <= low <= high <= 1.0
-    assert low - 1e-12 <= solved / trials <= high + 1e-12
-
-
-def test_wilson_knows_nothing_without_trials() -> None:
-    assert wilson(0, 0) == (0.0, 1.0)

@@ -9,6 +9,8 @@ import pytest
 from rich.console import Console, RenderableType
 from syrupy.assertion import SnapshotAssertion
 
+from affcli.core.geometry import Point
+from affcli.core.task import GoalRegion
 from affcli.core.trial import Outcome
 from affcli.report.breaking import broken_tables
 from affcli.report.learning import groups_table, learned_table
@@ -16,7 +18,17 @@ from affcli.report.overview import overview_tables
 from affcli.report.reproduction import failures_table, reproduction_tables
 from affcli.report.trials import counts_table, explain_trial, solve_table
 from tests.report import hand_made
-from tests.report.hand_made import BROKEN, FOUR_ROBOTS, GROUPS, OVERVIEW, RUNS, WHOLE, row, spec
+from tests.report.hand_made import (
+    BROKEN,
+    FOUR_ROBOTS,
+    GROUPS,
+    MANY_ROBOTS,
+    OVERVIEW,
+    RUNS,
+    WHOLE,
+    row,
+    spec,
+)
 
 SOLVED, LIMIT = Outcome.SOLVED, Outcome.STEP_LIMIT
 OUT, NO_ROW = Outcome.ATTRACTOR_OUT_OF_REACH, Outcome.NO_ROW
@@ -30,6 +42,7 @@ SOLVE = [
     for start, (outcome, steps) in enumerate(ends, start=1)
     for trial in [hand_made.trial(spec(start, tool=tool), outcome, steps_taken=steps)]
 ]
+GOAL = GoalRegion(3, Point(-12.0, 24.0), 2.0)
 MISSING_SIDE = 3.5
 """What the L-hook lacks of the T-hook lies to the right."""
 
@@ -43,18 +56,21 @@ EXPLAINED = hand_made.trial(
 )
 
 TABLES: dict[str, tuple[RenderableType, ...]] = {
-    "groups": (groups_table("t-hook", GROUPS),),
-    "learned": (learned_table(RUNS),),
+    "groups": (groups_table(RUNS[0], GROUPS),),
+    "learned": (learned_table([(RUNS[0], "defaults"), (RUNS[1], "sensor.position_noise = 0.12")]),),
     "solve": (solve_table(2, SOLVE),),
     "solve, one start": (solve_table(3, SOLVE[5:6]),),
     "explain": (
-        explain_trial(EXPLAINED.spec, EXPLAINED.end, [step.record for step in EXPLAINED.steps]),
+        explain_trial(
+            EXPLAINED.spec, EXPLAINED.end, [step.record for step in EXPLAINED.steps], GOAL
+        ),
     ),
-    "counts": (counts_table("Extension of reach", OVERVIEW.solved),),
+    "counts": (counts_table(OVERVIEW.solved),),
     "broken": broken_tables("l-hook", MISSING_SIDE, [*BROKEN, *WHOLE]),
     "failures": (failures_table({"step limit": 2, "no row left": 2, "invalid": 31}, 80),),
     "no failures": (failures_table({}, 16),),
     "reproduction": reproduction_tables(FOUR_ROBOTS),
+    "reproduction, many robots": reproduction_tables(MANY_ROBOTS),
     "overview": tuple(overview_tables(OVERVIEW)),
 }
 
