@@ -174,7 +174,7 @@ def observations(numbers: list[float]) -> tuple[Observation, Observation]:
 def bench_reproduce(full: bool) -> dict[str, Any]:
     """Seconds and bytes a robot of `reproduce`, on two workers, for growing numbers of robots."""
     affcli = Path(sys.executable).with_name("affcli")
-    counts = (10, 200, 1_000) if full else (10, 40)
+    counts = (10, 200, 1_000) if full else (10, 20)
     figures = {}
     with tempfile.TemporaryDirectory() as folder:
         for robots in counts:

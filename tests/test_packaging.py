@@ -93,4 +93,4 @@ def test_it_works_outside_of_the_checkout(installed: Path, tmp_path: Path) -> No
         ]
         assert driver.execute("PRAGMA application_id").fetchone()[0] == 0x61666663
     shown = ran(program, "report", cwd=tmp_path)
-    assert "What the stick affords, by behavior" in shown
+    assert "Run 1: what the stick affords, by behavior" in shown

@@ -2,11 +2,13 @@
 
 import platform
 import sqlite3
+from functools import cache
 from importlib.metadata import version
 
 from affcli import __version__
 
 
+@cache
 def versions() -> dict[str, str]:
     """Return the versions of affcli and of what decides its numbers."""
     return {

@@ -44,7 +44,7 @@ def test_after_solving_and_breaking(used: Path) -> None:
     """The stick never solves goal 1, so with it there is always a failure to show."""
     done("solve", "--goal", "1", "--tool", "stick", "--db", used)
     reach, broke, failures = titles(used)[len(LEARNED) :]
-    assert reach == "Extension of reach: this robot"
+    assert reach == "Extension of reach, by learning run"
     assert broke == "Tools that broke"
     assert failures == "Failures by kind"
     value = done("report", "--json", "--db", used).json

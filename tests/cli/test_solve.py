@@ -87,8 +87,11 @@ def test_explain_says_it_in_words(learned: Path, tmp_path: Path) -> None:
     many = "s" if steps != 1 else ""
     assert head == f"stick, goal 1, start 2: {trial['outcome']} ({steps} step{many})"
     for number, step in enumerate(trial["explain"]):
-        chosen, left, movement, probability = lines[4 * number : 4 * number + 4]
+        chosen, seen, left, why, movement, probability = lines[6 * number : 6 * number + 6]
         assert chosen == f"  step {step['step']}: row {step['row']}, {step['behavior']}"
+        assert seen.endswith(f" {step['distance_to_goal']:.1f} in from the goal's centre")
+        assert f" {step['repositioning']:.1f} in; " in why
+        assert f" {step['expected_distance_to_goal']:.1f} in from there" in why
         rows_left = step["rows_left"]
         assert left.split() == words_of(rows_left)
         assert movement.startswith("    expected ")
