@@ -34,6 +34,8 @@ AT_MOST = {
     "sensor.position_noise": 10.0,
     "sensor.color_noise": 255.0,
 }
+LARGEST_FILE = 1_000_000
+"""Bytes of a file of settings; all of them take some 2,000."""
 LARGEST, SMALLEST = 1e6, 1e-3
 """No length, speed, time or count of this laboratory lies beyond them."""
 
@@ -81,7 +83,14 @@ def load_settings(path: Path | None) -> Settings:
     if path is None:
         return Settings()
     try:
-        overrides = tomllib.loads(path.read_text(encoding="utf-8"))
+        with path.open("rb") as file:
+            text = file.read(LARGEST_FILE + 1)
+        if len(text) > LARGEST_FILE:
+            raise BadInputError(
+                f"config {one_line(path)}: more than {LARGEST_FILE} bytes; give a TOML file of "
+                "settings"
+            )
+        overrides = tomllib.loads(text.decode("utf-8"))
     except OSError as error:
         raise BadInputError(
             f"config {one_line(path)}: {error.strerror}; give a TOML file that can be read"

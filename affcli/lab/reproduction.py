@@ -5,14 +5,17 @@ import signal
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from functools import partial
-from multiprocessing import get_context
+from multiprocessing import active_children, get_context
 
 from affcli.config import Settings
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.geometry import Point, Pose
 from affcli.core.tool import TOOL_PARTS
 from affcli.core.trial import LearningSpec, Protocol, RobotRecord, TrialRecord
+from affcli.errors import AffcliError
 from affcli.lab.learning import LearningRun
 from affcli.lab.trials import LostAffordances, trial_specs, whole_trial
 from affcli.lab.versions import versions
@@ -98,18 +101,49 @@ def _lives(settings: Settings, seed: int, robots: list[int], workers: int) -> It
         yield from map(life, robots)
         return
     context = get_context("spawn")
-    pool = ProcessPoolExecutor(workers, context, initializer=_begin_worker)
+    with _interrupt_held_back():
+        pool = ProcessPoolExecutor(workers, context, initializer=_begin_worker)
     waiting: deque[Future[PackedRobot]] = deque()
     todo = iter(robots)
     try:
         for robot in todo:
-            waiting.append(pool.submit(life, robot))
+            with _interrupt_held_back():
+                waiting.append(pool.submit(life, robot))
             if len(waiting) > 2 * workers:
                 yield waiting.popleft().result()
         while waiting:
             yield waiting.popleft().result()
+    except BaseException as error:
+        # Also when nobody wants more lives: those begun would take seconds to end.
+        for worker in active_children():
+            worker.terminate()
+        if isinstance(error, BrokenProcessPool):
+            raise AffcliError(
+                "a worker process died, for want of memory perhaps; the robots before are saved: "
+                "run the command again, with fewer --workers"
+            ) from error
+        raise
     finally:
-        pool.shutdown(wait=False, cancel_futures=True)
+        pool.shutdown(cancel_futures=True)
+
+
+@contextmanager
+def _interrupt_held_back() -> Iterator[None]:
+    """Hold ctrl-C back for a moment, and for good in the processes begun in it.
+
+    The terminal sends it to all of them, and one that is still importing would show a traceback.
+    A process inherits what is blocked; here it may yet arrive, by a thread of numpy's.
+    """
+    arrived: list[int] = []
+    handler = signal.signal(signal.SIGINT, lambda signum, _: arrived.append(signum))
+    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, blocked)
+        signal.signal(signal.SIGINT, handler)
+        if arrived:
+            signal.raise_signal(signal.SIGINT)
 
 
 def _packed_life(settings: Settings, seed: int, robot: int) -> PackedRobot:
@@ -118,10 +152,9 @@ def _packed_life(settings: Settings, seed: int, robot: int) -> PackedRobot:
 
 
 def _begin_worker() -> None:
-    """Let ctrl-C reach the parent alone, which saves and stops the workers; collect seldom.
+    """Collect seldom.
 
     A life is many small records and hardly a cycle: looking for cycles as often as Python does by
     default costs 7 % of the time.
     """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
     gc.set_threshold(100_000, 20, 20)

@@ -11,6 +11,10 @@ from affcli.core.change_detection import change_detected
 from affcli.core.observation import Observation
 from affcli.core.ports import Experimenter, Robot, Sensor
 from affcli.core.trial import BabblingRecord
+from affcli.errors import BadInputError
+
+MOST_RESETS = 1_000
+"""In a row, before one behavior; with sensible settings one is enough."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +81,12 @@ def babble(
         placing: Execution | None = None
         lost = experimenter.attractor_out_of_reach()
         while placing is None:
+            if resets >= MOST_RESETS:
+                raise BadInputError(
+                    f"babbling: {resets} times in a row no wrist position put the attractor where "
+                    "a tool might touch it; widen babbling.offset_x_max and offset_y_min to "
+                    "offset_y_max, or lower sensor.position_noise"
+                )
             if lost:
                 experimenter.put_attractor_back()
                 state.seen = None

@@ -57,9 +57,12 @@ class SimulatedRobot:
         held = squared >= inner * inner
         held &= squared <= outer * outer
         # Within the waist's range of straight ahead: y >= r cos(waist), without an arc tangent.
-        np.sqrt(squared, out=squared)
-        squared *= math.cos(self._low.waist_max)
-        held &= y >= squared
+        if self._low.waist_max >= math.radians(90.0):
+            held &= y >= 0.0
+        else:
+            np.sqrt(squared, out=squared)
+            squared *= math.cos(self._low.waist_max)
+            held &= y >= squared
         return held
 
     def execute(self, call: BehaviorCall, seen: Observation | None) -> Execution:

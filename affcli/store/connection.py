@@ -66,8 +66,9 @@ class Connected:
                 # While others read nobody can commit; the transaction stays open meanwhile.
                 self._say("COMMIT")
             finally:
-                if self._driver.in_transaction:
-                    with suppress(sqlite3.Error):
+                # A signal that interrupts a statement makes SQLAlchemy close the connection.
+                with suppress(sqlite3.Error):
+                    if self._driver.in_transaction:
                         self._driver.execute("ROLLBACK")
 
     def _say(self, statement: str) -> None:

@@ -23,6 +23,8 @@ BAD = {
     "half a step": (b"[trial]\nmax_steps = 1.5", "trial.max_steps = 1.5 must be a whole number"),
     "deeply nested": (b"a = " + b"[" * 100_000, "not TOML"),
     "100,000 digits": (b"[puck]\nmass = " + b"1" * 100_000, "not TOML"),
+    "6,000 hexadecimal digits": (b"[puck]\nmass = 0x" + b"f" * 6000, "puck.mass = (int too large"),
+    "2 MB": (b"# a long remark\n" * 125_000, "more than 1000000 bytes"),
     "escape sequence": (b'["\\u001b[31mred"]\nx = 1', "no section \\x1b[31mred"),
     "markup": (b'["[/]"]\nx = 1', "no section [/]"),
     "10 kB name": (b"[" + b"x" * 10_000 + b"]\ny = 1", "no section xxx"),
@@ -44,6 +46,19 @@ def test_a_file_that_cannot_be_read(command: tuple[str, ...], tmp_path: Path) ->
         line = refused(4, *command, "--config", path, cwd=tmp_path)
         assert line.endswith("; give a TOML file that can be read")
     assert names_in(tmp_path) == []
+
+
+def test_a_file_without_end_is_not_read_to_its_end(tmp_path: Path) -> None:
+    line = refused(4, "learn", "--tool", "stick", "--config", "/dev/zero", cwd=tmp_path)
+    assert "more than 1000000 bytes" in line
+
+
+def test_a_box_that_no_wrist_position_reaches_is_refused(tmp_path: Path) -> None:
+    """Babbling would put the attractor back for ever."""
+    (tmp_path / "my.toml").write_text("[babbling]\noffset_y_min = 100.0\noffset_y_max = 200.0\n")
+    args = ("learn", "--tool", "stick", "--behaviors", "5", "--config", "my.toml")
+    line = refused(4, *args, cwd=tmp_path)
+    assert "1000 times in a row no wrist position" in line
 
 
 def test_settings_make_another_run(tmp_path: Path) -> None:

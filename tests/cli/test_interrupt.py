@@ -1,5 +1,6 @@
 """Stopped by ctrl-C, by SIGTERM, or killed; and gone on with (faults 1 to 3)."""
 
+import os
 import signal
 import subprocess
 import time
@@ -9,7 +10,16 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.program import Ended, contents, done, ending, rows, started, wait_until
+from tests.cli.program import (
+    Ended,
+    contents,
+    done,
+    ending,
+    one_printable_line,
+    rows,
+    started,
+    wait_until,
+)
 
 LONG = ("learn", "--tool", "stick", "--behaviors", "7000")
 GOES_ON = "affcli: stopped; what was saved is kept, and the same command goes on from there\n"
@@ -114,6 +124,41 @@ def test_a_stopped_reproduction_goes_on(leisurely: Path, tmp_path: Path, reprodu
     assert rows(database, "PRAGMA integrity_check") == [("ok",)]
     done(*command, "--workers", "1")
     assert contents(database) == contents(reproduced)
+
+
+@pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGTERM])
+def test_workers_end_with_their_parent(signum: signal.Signals, tmp_path: Path) -> None:
+    """Lives of full length take seconds; nobody waits for those begun."""
+    database = tmp_path / "my.db"
+    process = started("reproduce", "--robots", "9", "--workers", "2", "--db", database)
+    wait_until(more_than(0, partial(robots, database)), process)
+    assert stopped(process, signum) == Ended(128 + signum, "", GOES_ON)
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.3, 0.6])
+def test_ctrl_c_reaches_workers_that_are_just_starting(delay: float, tmp_path: Path) -> None:
+    """A terminal sends it to the whole group; the parent alone has something to say."""
+    process = started("reproduce", "--robots", "9", "--workers", "2", "--db", tmp_path / "my.db")
+    wait_until(partial(handles_signals, process.pid), process)
+    children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
+    if children.exists():
+        wait_until(lambda: len(children.read_text().split()) > 1, process)
+    time.sleep(delay)
+    os.killpg(process.pid, signal.SIGINT)
+    assert ending(process, SOON) == Ended(130, "", GOES_ON)
+
+
+def test_a_worker_that_died_is_named(tmp_path: Path) -> None:
+    """As the system kills one when memory runs out."""
+    database = tmp_path / "my.db"
+    process = started("reproduce", "--robots", "9", "--workers", "2", "--db", database)
+    wait_until(more_than(0, partial(robots, database)), process)
+    command = ["/usr/bin/pgrep", "-P", str(process.pid), "-f", "spawn_main"]
+    found = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    os.kill(int(found.split()[0]), signal.SIGKILL)
+    ended = ending(process)
+    assert (ended.code, ended.out) == (1, "")
+    assert "a worker process died" in one_printable_line(ended.err)
 
 
 def test_solving_keeps_the_steps_before_it_was_stopped(learned: Path) -> None:
