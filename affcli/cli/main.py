@@ -26,6 +26,8 @@ class Stop:
     def __init__(self) -> None:
         for signum in (signal.SIGINT, signal.SIGTERM):
             signal.signal(signum, self)
+        signal.signal(signal.SIGALRM, _leave)
+        sys.unraisablehook = _once_more
 
     def __call__(self, signum: int, frame: FrameType | None) -> None:
         """Remember the signal and leave."""
@@ -34,6 +36,23 @@ class Stop:
         for either in (signal.SIGINT, signal.SIGTERM):
             signal.signal(either, signal.SIG_DFL)
         raise Stopped
+
+
+def _leave(signum: int, frame: FrameType | None) -> None:
+    """Leave by an exception."""
+    del signum, frame
+    raise Stopped
+
+
+def _once_more(unraisable: "sys.UnraisableHookArgs") -> None:
+    """Leave a moment later when Python had to swallow the exception.
+
+    It does so where the signal falls into a callback, as the import system has many.
+    """
+    if isinstance(unraisable.exc_value, Stopped):
+        signal.setitimer(signal.ITIMER_REAL, 0.005)
+    else:
+        sys.__unraisablehook__(unraisable)
 
 
 def main() -> int:
