@@ -79,7 +79,7 @@ $(MADE):
 	@printf '%s\n' '$(CURDIR)' > $@
 
 $(INSTALLED): $(MADE) pyproject.toml requirements.lock
-	$(PIP) install -q -c requirements.lock -e .
+	$(PIP) install -q -c requirements.lock -e '.[camera]'
 	@touch $@
 
 # What check and test need includes what demo needs.

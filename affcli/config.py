@@ -6,18 +6,29 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, get_type_hints
 
+from affcli.core.observation import SENSOR_KINDS, SensorKind
+from affcli.core.tool import Color
 from affcli.core.workspace import Workspace
 from affcli.errors import BadInputError, one_line
+from affcli.perception.camera_settings import CameraSettings
 from affcli.perception.noisy_sensor import SensorSettings
+from affcli.perception.palette import ColorClass, Role, palette, paper_palette
 from affcli.procedures.babbling import BabblingSettings
 from affcli.procedures.extension_of_reach import TrialLimits
 from affcli.simulation.physics_settings import PhysicsSettings
 
-MAY_BE_NEGATIVE = frozenset({"arm.shoulder_min_degrees"})
+CHOICES = {"sensor.kind": SENSOR_KINDS}
+MAY_BE_NEGATIVE = frozenset(
+    {"arm.shoulder_min_degrees", "camera.distortion_per_mm2", "camera.x", "camera.y"}
+)
 MAY_BE_ZERO = frozenset(
     {
         "arm.flange_height",
-        "arm.shoulder_min_degrees",
+        "camera.blur_px",
+        "camera.grey_noise",
+        "camera.tilt_degrees",
+        "camera.turn_degrees",
+        "camera.uneven_light",
         "friction.tool_puck",
         "tools.handle_below_grasp",
         "sensor.position_noise",
@@ -30,6 +41,14 @@ AT_LEAST = {"physics.collision_slop": 1e-9, "physics.overlap_mended": 1e-6}
 AT_MOST = {
     "arm.waist_max_degrees": 90.0,
     "arm.elbow_max_degrees": 180.0,
+    "camera.blur_px": 20.0,
+    "camera.distortion_per_mm2": 0.05,
+    "camera.focal_length_mm": 100.0,
+    "camera.grey_noise": 255.0,
+    "camera.height": 1000.0,
+    "camera.tilt_degrees": 89.0,
+    "camera.turn_degrees": 360.0,
+    "camera.uneven_light": 0.9,
     "physics.overlap_mended": 1.0,
     "sensor.position_noise": 10.0,
     "sensor.color_noise": 255.0,
@@ -46,8 +65,9 @@ class Settings:
 
     Args:
         workspace: the geometry. Its parts (arm, tools, puck, friction, layout, motion, table) are
-            sections of the TOML file beside the four below.
-        sensor: how noisy the observations are.
+            sections of the TOML file beside the five below.
+        sensor: through what the robot sees, and how noisy it is.
+        camera: the simulated camera, where the robot sees through one.
         physics: how finely pushing is solved.
         babbling: where the robot plays.
         trial: when it gives up.
@@ -55,6 +75,7 @@ class Settings:
 
     workspace: Workspace = field(default_factory=Workspace)
     sensor: SensorSettings = field(default_factory=SensorSettings)
+    camera: CameraSettings = field(default_factory=CameraSettings)
     physics: PhysicsSettings = field(default_factory=PhysicsSettings)
     babbling: BabblingSettings = field(default_factory=BabblingSettings)
     trial: TrialLimits = field(default_factory=TrialLimits)
@@ -82,22 +103,62 @@ def load_settings(path: Path | None) -> Settings:
     """
     if path is None:
         return Settings()
+    source = f"config {one_line(path)}"
+    return settings_with(_toml(path, source), source)
+
+
+def load_colors(path: Path | None) -> tuple[ColorClass, ...]:
+    """Return the colour classes of a TOML file, one section each; without one the paper's.
+
+    A section is named as what has the colour, and holds ``rgb = [240, 120, 20]`` and, where it
+    matters, ``height``: of the middle of what is seen of it over the table (in).
+
+    Raises:
+        BadInputError: the file cannot be read or parsed, a value is wrong, or colours are alike.
+    """
+    if path is None:
+        return paper_palette(Workspace())
+    source = f"colors {one_line(path)}"
+    return palette(_color(name, value, source) for name, value in _toml(path, source).items())
+
+
+def _color(name: str, value: object, source: str) -> ColorClass:
+    """Return one section of a file of colours."""
+    shown = one_line(name, 40)
+    if not isinstance(value, dict) or not set(value) <= {"rgb", "height"} or "rgb" not in value:
+        raise BadInputError(f"{source}: [{shown}] must hold rgb = [red, green, blue], and height")
+    rgb = value["rgb"]
+    if not isinstance(rgb, list) or len(rgb) != 3:
+        raise BadInputError(f"{source}: {shown}.rgb = {one_line(rgb)} must be three numbers")
+    for number in rgb:
+        if isinstance(number, bool) or not isinstance(number, int | float):
+            raise BadInputError(f"{source}: {shown}.rgb = {one_line(rgb)} must be three numbers")
+        if not 0 <= number <= 255:
+            raise BadInputError(f"{source}: {shown}.rgb = {one_line(rgb)} must lie in [0, 255]")
+    height = value.get("height", 0.0)
+    if isinstance(height, bool) or not isinstance(height, int | float):
+        raise BadInputError(f"{source}: {shown}.height = {one_line(height)} must be a number")
+    if not 0.0 <= height <= LARGEST:
+        raise BadInputError(f"{source}: {shown}.height = {one_line(height)} must be 0 or more")
+    return ColorClass(name, Color(map(float, rgb)), Role.OBJECT, float(height))
+
+
+def _toml(path: Path, source: str) -> dict[str, Any]:
+    """Return what a TOML file holds; BadInputError, quoting `source`, when it cannot be read."""
     try:
         with path.open("rb") as file:
             text = file.read(LARGEST_FILE + 1)
         if len(text) > LARGEST_FILE:
             raise BadInputError(
-                f"config {one_line(path)}: more than {LARGEST_FILE} bytes; give a TOML file of "
-                "settings"
+                f"{source}: more than {LARGEST_FILE} bytes; give a TOML file of settings"
             )
-        overrides = tomllib.loads(text.decode("utf-8"))
+        return tomllib.loads(text.decode("utf-8"))
     except OSError as error:
         raise BadInputError(
-            f"config {one_line(path)}: {error.strerror}; give a TOML file that can be read"
+            f"{source}: {error.strerror}; give a TOML file that can be read"
         ) from error
     except (ValueError, RecursionError) as error:
-        raise BadInputError(f"config {one_line(path)}: not TOML: {one_line(error)}") from error
-    return settings_with(overrides, f"config {one_line(path)}")
+        raise BadInputError(f"{source}: not TOML: {one_line(error)}") from error
 
 
 def settings_with(overrides: dict[str, Any], source: str) -> Settings:
@@ -125,6 +186,13 @@ def settings_with(overrides: dict[str, Any], source: str) -> Settings:
     return replace(settings, workspace=workspace)
 
 
+def with_sensor(settings: Settings, kind: SensorKind | None) -> Settings:
+    """Return the settings with another sensor; unchanged for None."""
+    if kind is None:
+        return settings
+    return replace(settings, sensor=replace(settings.sensor, kind=kind))
+
+
 def differences(text: str) -> str:
     """Return in words how stored settings differ from the defaults: ``defaults``, or each key.
 
@@ -133,7 +201,7 @@ def differences(text: str) -> str:
     """
     own, usual = json.loads(text), _sections(Settings())
     words = [
-        f"{section}.{key} = {value:g}"
+        f"{section}.{key} = {value if isinstance(value, str) else format(value, 'g')}"
         for section, values in sorted(own.items())
         for key, value in sorted(values.items())
         if value != usual.get(section, {}).get(key)
@@ -152,12 +220,20 @@ def _overridden(part: Any, section: str, values: object, source: str) -> Any:
     if not isinstance(values, dict):
         raise BadInputError(f"{source}: {section} must be a section, [{section}]")
     kinds = get_type_hints(type(part))
-    checked = {}
+    checked: dict[str, object] = {}
     for key, value in values.items():
         path = f"{section}.{one_line(key)}"
         if key not in kinds:
             raise BadInputError(f"{source}: no key {path}; known: {', '.join(sorted(kinds))}")
-        checked[key] = _number(path, value, kinds[key], source)
+        known = CHOICES.get(f"{section}.{key}")
+        if known is None:
+            checked[key] = _number(path, value, kinds[key], source)
+        elif isinstance(value, str) and value in known:
+            checked[key] = value
+        else:
+            raise BadInputError(
+                f"{source}: {path} = {one_line(value)} must be one of {', '.join(known)}"
+            )
     return replace(part, **checked)
 
 

@@ -29,6 +29,12 @@ class BadInputError(AffcliError):
     exit_code = 4
 
 
+class NotSeenError(AffcliError):
+    """The camera does not see something that must be seen, or sees it twice."""
+
+    exit_code = 4
+
+
 class SimulationDivergedError(AffcliError):
     """The physics produced a number that is not finite: the settings are beyond it."""
 

@@ -5,6 +5,7 @@ import typer
 from affcli import __version__
 from affcli.cli import (
     break_tool,
+    camera,
     db,
     learn,
     report,
@@ -27,6 +28,7 @@ app.command("break-tool")(break_tool.break_tool)
 app.command("report")(report.report)
 app.command("reproduce")(reproduce.reproduce)
 app.command("sql")(sql.sql)
+app.add_typer(camera.app, name="camera")
 app.add_typer(db.app, name="db")
 
 

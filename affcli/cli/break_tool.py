@@ -9,7 +9,9 @@ from affcli.cli.options import (
     AsJson,
     Database,
     Seed,
+    Sensor,
     checked_seed,
+    checked_sensor,
     checked_tool,
 )
 from affcli.cli.solve import learned_runs
@@ -26,6 +28,7 @@ def break_tool(
         str, typer.Option("--becomes", help="The shape that is left.", metavar="NAME")
     ] = "l-hook",
     seed: Seed = 0,
+    sensor: Sensor = None,
     database: Database = DEFAULT_DATABASE,
     as_json: AsJson = False,
 ) -> None:
@@ -38,6 +41,7 @@ def break_tool(
     if checked_tool(becomes) == tool:
         raise UsageError(f"--becomes {becomes}: a broken {tool} must be another shape than it was")
     checked_seed(seed)
+    kind = checked_sensor(sensor)
 
     from affcli.config import settings_from_json
     from affcli.lab.bench import missing_side
@@ -49,7 +53,7 @@ def break_tool(
         (run,) = learned_runs(store, tool, database)
         with progress(f"{tool} becomes {becomes}", 32) as bar:
             trials = []
-            for trial in break_trials(store, run, becomes, seed, now):
+            for trial in break_trials(store, run, becomes, seed, now, kind):
                 trials.append(trial)
                 bar.update(len(trials), f"{len(trials)} of 32 trials")
     side = missing_side(settings_from_json(run.spec.settings), tool, becomes)

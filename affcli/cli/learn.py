@@ -11,9 +11,11 @@ from affcli.cli.options import (
     Config,
     Database,
     Seed,
+    Sensor,
     checked_count,
     checked_hours,
     checked_seed,
+    checked_sensor,
     checked_tools,
 )
 from affcli.cli.terminal import now, progress, say, show, show_json
@@ -40,6 +42,7 @@ def learn(
         int | None, typer.Option("--behaviors", help="Instead of hours.", metavar="N")
     ] = None,
     seed: Seed = 0,
+    sensor: Sensor = None,
     database: Database = DEFAULT_DATABASE,
     config: Config = None,
     as_json: AsJson = False,
@@ -60,14 +63,18 @@ def learn(
     else:
         hours = checked_hours(1.0 if hours is None else hours)
     checked_seed(seed)
+    kind = checked_sensor(sensor)
 
-    from affcli.config import load_settings
+    from affcli.config import load_settings, with_sensor
     from affcli.core.trial import LearningSpec
+    from affcli.lab.sensing import require_sensor
     from affcli.report.learning import groups_json, groups_table, run_json
     from affcli.store import open_store
 
-    settings = load_settings(config).to_json()
-    specs = [LearningSpec(name, seed, 0, hours, behaviors, settings) for name in names]
+    settings = with_sensor(load_settings(config), kind)
+    require_sensor(settings)
+    text = settings.to_json()
+    specs = [LearningSpec(name, seed, 0, hours, behaviors, text) for name in names]
     with open_store(database, create=True, write=True) as store:
         results = [_learn(store, spec) for spec in specs]
         groups = [store.behavior_groups(learned.info.id) for learned in results]

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from affcli.core.observation import SENSOR_KINDS, SensorKind
 from affcli.core.task import GOAL_NUMBERS, START_NUMBERS
 from affcli.core.tool import TOOL_PARTS
 from affcli.errors import BadInputError, UsageError, one_line
@@ -35,6 +36,18 @@ Config = Annotated[
         "--config", help="A TOML file of settings that differ.", metavar="FILE", readable=False
     ),
 ]
+Sensor = Annotated[
+    str | None,
+    typer.Option("--sensor", help="noisy, exact or camera.", metavar="KIND"),
+]
+
+
+def checked_sensor(kind: str | None) -> SensorKind | None:
+    """Return the kind of sensor asked for, None for none; UsageError when there is none such."""
+    if kind is None:
+        return None
+    known = _one_of("sensor", kind, SENSOR_KINDS)
+    return next(one for one in SENSOR_KINDS if one == known)
 
 
 def checked_seed(seed: int) -> int:

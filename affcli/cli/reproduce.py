@@ -13,8 +13,10 @@ from affcli.cli.options import (
     Config,
     Database,
     Seed,
+    Sensor,
     checked_count,
     checked_seed,
+    checked_sensor,
 )
 from affcli.cli.terminal import now, progress, say, show, show_json
 
@@ -23,6 +25,7 @@ def reproduce(
     *,
     robots: Annotated[int, typer.Option("--robots", help="How many robots.", metavar="N")] = 20,
     seed: Seed = 0,
+    sensor: Sensor = None,
     workers: Annotated[
         int | None,
         typer.Option("--workers", help="Processes; one a core if not given.", metavar="N"),
@@ -38,17 +41,20 @@ def reproduce(
     """
     checked_count("--robots", robots, MOST_ROBOTS)
     checked_seed(seed)
+    kind = checked_sensor(sensor)
     if workers is None:
         workers = min(len(os.sched_getaffinity(0)), MOST_WORKERS) if _has_affinity() else 1
     checked_count("--workers", workers, MOST_WORKERS)
 
-    from affcli.config import load_settings
+    from affcli.config import load_settings, with_sensor
     from affcli.lab.overview import reproduction_of
     from affcli.lab.reproduction import reproduce as run_reproduction
+    from affcli.lab.sensing import require_sensor
     from affcli.report.reproduction import reproduction_json, reproduction_tables
     from affcli.store import open_store
 
-    settings = load_settings(config)
+    settings = with_sensor(load_settings(config), kind)
+    require_sensor(settings)
     with open_store(database, create=True, write=True) as store:
         events = run_reproduction(store, settings, robots, seed, workers, now)
         session = next(events)

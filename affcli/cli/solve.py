@@ -9,8 +9,10 @@ from affcli.cli.options import (
     AsJson,
     Database,
     Seed,
+    Sensor,
     checked_goal,
     checked_seed,
+    checked_sensor,
     checked_starts,
     checked_tool,
 )
@@ -40,6 +42,7 @@ def solve(
     ] = None,
     start: Annotated[str, typer.Option("--start", help="1 to 4, or all.", metavar="N")] = "all",
     seed: Seed = 0,
+    sensor: Sensor = None,
     explain: Annotated[
         bool, typer.Option("--explain", help="Say step by step why each row was chosen.")
     ] = False,
@@ -54,6 +57,7 @@ def solve(
     checked_goal(goal)
     starts = checked_starts(start)
     checked_seed(seed)
+    kind = checked_sensor(sensor)
     if tool is not None:
         checked_tool(tool)
 
@@ -74,7 +78,7 @@ def solve(
             ]
             for run in runs
         }
-        for event in solve_trials(store, runs, goal, starts, seed, now):
+        for event in solve_trials(store, runs, goal, starts, seed, now, kind):
             if isinstance(event, SolvedStep):
                 steps[-1].append(event.record)
                 continue

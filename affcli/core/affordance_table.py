@@ -12,10 +12,10 @@ from affcli.core.observation import Observation
 Rows = NDArray[np.intp]
 """Positions of rows in a table, in ascending order: lower is older."""
 
-COLOR_TOLERANCE = 30.0
+COLOR_TOLERANCE = 45.0
 """Two colours are consistent when they differ by at most this much in RGB (Euclidean, 0 to 255).
-Choice: 15 standard deviations of the default sensor's colour noise, about a quarter of the distance
-between the two most similar tools."""
+Choice: more than the light makes of one thing's colour wherever it lies on the table (31, through
+the camera), less than half the distance between the two most similar tools (57)."""
 
 
 class AffordanceTable:

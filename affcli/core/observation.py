@@ -1,9 +1,13 @@
 """The observation vector: twelve reals (§5.2), and the sighting of a goal region."""
 
 import math
-from typing import NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 from affcli.core.geometry import Point
+
+SensorKind = Literal["noisy", "exact", "camera"]
+"""Through what a simulated robot sees: true positions with noise, without, or pictures."""
+SENSOR_KINDS: tuple[SensorKind, ...] = get_args(SensorKind)
 
 
 class Observation(NamedTuple):

@@ -17,6 +17,7 @@ class Scene:
         wrist: the wrist, which is the tool's grasp point (in, table frame).
         tool: the tool held, by its true shape.
         goal: the goal region on the table; None while learning.
+        lift: how high over the table the tool is held (in); 0 while it slides.
     """
 
     attractor: Pose
@@ -24,3 +25,4 @@ class Scene:
     wrist: Point
     tool: Tool
     goal: GoalRegion | None
+    lift: float = 0.0

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from affcli.core.affordance import Affordance
 from affcli.core.behavior import Execution
 from affcli.core.geometry import Pose
-from affcli.core.observation import Movement, Observation
+from affcli.core.observation import Movement, Observation, SensorKind
 
 
 class Truth(NamedTuple):
@@ -69,6 +69,7 @@ class TrialSpec:
         seed: 0 to 2^63 - 1.
         robot: which of many robots that share the seed.
         counters: which counters it starts from and where updates go.
+        sensor: through what the robot sees.
     """
 
     protocol: Protocol
@@ -79,6 +80,7 @@ class TrialSpec:
     seed: int
     robot: int
     counters: Counters
+    sensor: SensorKind = "noisy"
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,11 +213,19 @@ class TrialStep(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class TrialRecord:
-    """A whole testing trial: what it was a function of, its steps, its end."""
+    """A whole testing trial.
+
+    Args:
+        spec: what it was a function of.
+        steps: what was done.
+        end: how it ended.
+        calibration: of the camera it saw through, as JSON; None without one.
+    """
 
     spec: TrialSpec
     steps: tuple[TrialStep, ...]
     end: TrialEnd
+    calibration: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,8 +236,10 @@ class RobotRecord:
         robot: its number.
         learned: for each tool the spec, the steps and the robot seconds of its learning run.
         trials: all its testing trials.
+        calibration: of its camera, as JSON; None without one.
     """
 
     robot: int
     learned: tuple[tuple[LearningSpec, tuple[tuple[BabblingRecord, Truth], ...], float], ...]
     trials: tuple[TrialRecord, ...]
+    calibration: str | None = None

@@ -54,6 +54,9 @@ class ToolGeometry:
     """From the handle's middle line to the outer edge of a left or right bar."""
     hook_length: float = 5.3
     """A hook's length along the handle, from the far edge of the bar back toward the robot."""
+    thickness: float = 0.75
+    """Height of all parts over the table: square stock, lower than the puck. Only a camera sees
+    it."""
 
 
 @dataclass(frozen=True, slots=True)

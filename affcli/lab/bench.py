@@ -7,9 +7,10 @@ import numpy as np
 
 from affcli.behaviors.registry import BehaviorRegistry, paper_behaviors
 from affcli.config import Settings
+from affcli.core.ports import Sensor
 from affcli.core.tool import Tool, ToolName, paper_tools
 from affcli.core.trial import Truth
-from affcli.perception.noisy_sensor import NoisySensor
+from affcli.lab.sensing import sensor_for
 from affcli.simulation.experimenter import SimulatedExperimenter
 from affcli.simulation.robot import SimulatedRobot
 from affcli.simulation.world import World
@@ -33,16 +34,26 @@ class Bench:
     settings: Settings
     world: World
     robot: SimulatedRobot
-    sensor: NoisySensor
+    sensor: Sensor
     experimenter: SimulatedExperimenter
     behaviors: BehaviorRegistry
     streams: dict[str, np.random.Generator]
 
     @classmethod
-    def of(cls, settings: Settings, world: World, *key: int) -> "Bench":
-        """Wire a bench around `world`, with random streams that depend on `key` alone."""
+    def of(
+        cls, settings: Settings, world: World, purpose: int, seed: int, robot: int, *words: int
+    ) -> "Bench":
+        """Wire a bench around `world`, with random streams that depend on the numbers alone.
+
+        Args:
+            settings: of everything.
+            world: the true state.
+            purpose: `LEARNING` or `TRIAL`.
+            seed, robot: whose bench it is.
+            words: what else tells its streams from others'.
+        """
         workspace = settings.workspace
-        sequence = np.random.SeedSequence(key)
+        sequence = np.random.SeedSequence((purpose, seed, robot, *words))
         names = ("choices", "noise", "hand")
         streams = {
             name: np.random.Generator(np.random.PCG64(child))
@@ -53,7 +64,7 @@ class Bench:
             settings,
             world,
             SimulatedRobot(world, behaviors.paths),
-            NoisySensor(lambda: world.scene, settings.sensor, streams["noise"]),
+            sensor_for(settings, lambda: world.scene, streams["noise"], seed, robot),
             SimulatedExperimenter(world, streams["hand"]),
             behaviors,
             streams,

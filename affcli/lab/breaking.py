@@ -2,7 +2,8 @@
 
 from collections.abc import Callable, Iterator
 
-from affcli.config import settings_from_json
+from affcli.config import settings_from_json, with_sensor
+from affcli.core.observation import SensorKind
 from affcli.core.trial import Protocol, TrialRecord
 from affcli.lab.trials import LostAffordances, trial_specs, whole_trial
 from affcli.lab.versions import versions
@@ -11,7 +12,12 @@ from affcli.store import LearningRunInfo, Store
 
 
 def break_tool(
-    store: Store, run: LearningRunInfo, shape: str, seed: int, now: Callable[[], str]
+    store: Store,
+    run: LearningRunInfo,
+    shape: str,
+    seed: int,
+    now: Callable[[], str],
+    sensor: SensorKind | None = None,
 ) -> Iterator[TrialRecord]:
     """Do the 16 trials with the broken tool, and the same 16 with the whole one beside them.
 
@@ -24,21 +30,24 @@ def break_tool(
         shape: what is left of the tool; it keeps the tool's colour, so the robot is not told.
         seed: of the sensor's noise.
         now: gives the time as ISO text.
+        sensor: through what the robot sees; None for what it learned with.
 
     Yields:
         Each trial once it is saved, the broken tool's first.
     """
-    settings = settings_from_json(run.spec.settings)
+    settings = with_sensor(settings_from_json(run.spec.settings), sensor)
+    kind = settings.sensor.kind
     table, ids = store.affordance_table(run.id, as_learned=True)
     world = World(settings.workspace, settings.physics)
     lost = LostAffordances(settings, shape, store.row_starts(run.id))
-    session = store.begin_session("break-tool", seed, 1, run.spec.settings, versions(), now())
+    text = settings.to_json()
+    session = store.begin_session("break-tool", seed, 1, text, versions(kind), now())
     tool, robot = run.spec.tool, run.spec.robot
     for protocol, held, judge in (
         (Protocol.TOOL_ADAPTATION, shape, lost),
         (Protocol.EXTENSION_OF_REACH, tool, None),
     ):
-        for spec in trial_specs(protocol, tool, held, seed, robot):
+        for spec in trial_specs(protocol, tool, held, seed, robot, kind):
             trial = whole_trial(spec, settings, table, world, judge)
             store.save_trials(session, run.id, [trial], ids)
             yield trial

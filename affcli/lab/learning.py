@@ -9,6 +9,7 @@ from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Observation
 from affcli.core.trial import BabblingRecord, LearningSpec, Truth
 from affcli.lab.bench import LEARNING, Bench, stable_number, tool_named
+from affcli.lab.sensing import calibration_of
 from affcli.lab.versions import versions
 from affcli.procedures.babbling import BabblingState, babble
 from affcli.simulation.world import World
@@ -24,6 +25,9 @@ class LearningRun:
     Args:
         spec: what the run is a function of.
         checkpoint: what `checkpoint` gave when the run was stopped; None to begin.
+
+    Attributes:
+        calibration: of the camera that the robot sees through, as JSON; None without one.
     """
 
     def __init__(self, spec: LearningSpec, checkpoint: dict[str, Any] | None = None) -> None:
@@ -31,6 +35,7 @@ class LearningRun:
         world = World(settings.workspace, settings.physics)
         key = (LEARNING, spec.seed, spec.robot, stable_number(spec.tool))
         self.spec = spec
+        self.calibration = calibration_of(settings, spec.seed, spec.robot)
         self.bench = Bench.of(settings, world, *key)
         self._state = BabblingState()
         tool = tool_named(settings, spec.tool)
@@ -126,7 +131,8 @@ def learn(
     Raises:
         DatabaseError: a chunk could not be saved; the chunks before it are kept.
     """
-    info = store.begin_learning(spec, versions(), now())
+    made_with = versions(settings_from_json(spec.settings).sensor.kind)
+    info = store.begin_learning(spec, made_with, now())
     new = False
     while info.status != "done":
         run = LearningRun(spec, info.checkpoint)
@@ -140,8 +146,9 @@ def learn(
                 robot_seconds=run.bench.robot.clock,
                 done=run.done,
                 now=now(),
+                calibration=run.calibration,
             )
-            info = store.begin_learning(spec, versions(), now())
+            info = store.begin_learning(spec, made_with, now())
             if progress is not None:
                 progress(info)
             if not saved:

@@ -17,6 +17,7 @@ from affcli.core.tool import TOOL_PARTS
 from affcli.core.trial import LearningSpec, Protocol, RobotRecord, TrialRecord
 from affcli.errors import AffcliError
 from affcli.lab.learning import LearningRun
+from affcli.lab.sensing import calibration_of
 from affcli.lab.trials import LostAffordances, trial_specs, whole_trial
 from affcli.lab.versions import versions
 from affcli.simulation.world import World
@@ -32,6 +33,7 @@ HOURS = 1.0
 def one_robot(settings: Settings, seed: int, robot: int) -> RobotRecord:
     """Return the life of one robot: a pure function of settings, seed and its number."""
     text = settings.to_json()
+    sensor = settings.sensor.kind
     world = World(settings.workspace, settings.physics)
     learned = []
     trials: list[TrialRecord] = []
@@ -41,16 +43,18 @@ def one_robot(settings: Settings, seed: int, robot: int) -> RobotRecord:
         steps = tuple(run.steps())
         learned.append((spec, steps, run.bench.robot.clock))
         table = AffordanceTable(r.affordance for r, _ in steps if r.affordance is not None)
-        whole = trial_specs(Protocol.EXTENSION_OF_REACH, name, name, seed, robot)
+        whole = trial_specs(Protocol.EXTENSION_OF_REACH, name, name, seed, robot, sensor)
         trials += [whole_trial(trial, settings, table, world) for trial in whole]
         if name == BROKEN_TOOL:
             starts: dict[int, tuple[Point, Pose]] = {
                 r.step: (r.execution.wrist_start, truth.start) for r, truth in steps if r.affordance
             }
             lost = LostAffordances(settings, BROKEN_SHAPE, starts)
-            broken = trial_specs(Protocol.TOOL_ADAPTATION, name, BROKEN_SHAPE, seed, robot)
+            protocol = Protocol.TOOL_ADAPTATION
+            broken = trial_specs(protocol, name, BROKEN_SHAPE, seed, robot, sensor)
             trials += [whole_trial(trial, settings, table, world, lost) for trial in broken]
-    return RobotRecord(robot, tuple(learned), tuple(trials))
+    calibration = calibration_of(settings, seed, robot)
+    return RobotRecord(robot, tuple(learned), tuple(trials), calibration)
 
 
 def reproduce(
@@ -79,13 +83,14 @@ def reproduce(
         The session's id first, then how many robots are saved, each time one more is.
     """
     text = settings.to_json()
-    session = store.begin_session("reproduce", seed, robots, text, versions(), now())
+    made_with = versions(settings.sensor.kind)
+    session = store.begin_session("reproduce", seed, robots, text, made_with, now())
     yield session
     there = store.saved_robots(session)
     missing = [i for i in range(robots) if i not in there]
     saved = robots - len(missing)
     for life in _lives(settings, seed, missing, workers):
-        store.save_robot(session, life, versions(), now())
+        store.save_robot(session, life, made_with, now())
         saved += 1
         yield saved
     store.finish_session(session, now())

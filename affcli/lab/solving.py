@@ -3,8 +3,10 @@
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from affcli.config import settings_from_json
+from affcli.config import settings_from_json, with_sensor
+from affcli.core.observation import SensorKind
 from affcli.core.trial import Counters, Outcome, Protocol, StepRecord, TrialEnd, TrialSpec
+from affcli.lab.sensing import calibration_of
 from affcli.lab.trials import Ended, run_trial
 from affcli.lab.versions import versions
 from affcli.simulation.world import World
@@ -39,6 +41,7 @@ def solve(
     starts: Sequence[int],
     seed: int,
     now: Callable[[], str],
+    sensor: SensorKind | None = None,
 ) -> Iterator[SolvedStep | SolvedTrial]:
     """Do one trial for each learned tool and start, one after the other.
 
@@ -53,13 +56,17 @@ def solve(
         starts: among 1 to 4.
         seed: of the sensor's noise.
         now: gives the time as ISO text.
+        sensor: through what the robot sees; None for what it learned with.
 
     Yields:
         Each step once it is saved, and each trial's end.
     """
-    session = store.begin_session("solve", seed, 1, runs[0].spec.settings, versions(), now())
+    first = with_sensor(settings_from_json(runs[0].spec.settings), sensor)
+    made_with = versions(first.sensor.kind)
+    session = store.begin_session("solve", seed, 1, first.to_json(), made_with, now())
     for run in runs:
-        settings = settings_from_json(run.spec.settings)
+        settings = with_sensor(settings_from_json(run.spec.settings), sensor)
+        calibration = calibration_of(settings, seed, run.spec.robot)
         world = World(settings.workspace, settings.physics)
         for start in starts:
             spec = TrialSpec(
@@ -71,9 +78,10 @@ def solve(
                 seed=seed,
                 robot=run.spec.robot,
                 counters=Counters.STORED,
+                sensor=settings.sensor.kind,
             )
             table, ids = store.affordance_table(run.id)
-            trial = store.begin_trial(session, run.id, spec)
+            trial = store.begin_trial(session, run.id, spec, calibration)
             steps = Ended(run_trial(spec, settings, table, world))
             for record, truth in steps:
                 store.save_step(trial, spec, record, truth, ids[record.row.step])

@@ -3,11 +3,11 @@
 from collections.abc import Generator, Iterator, Mapping
 from typing import Generic, TypeVar
 
-from affcli.config import Settings
+from affcli.config import Settings, with_sensor
 from affcli.core.affordance import Affordance, replicates
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.geometry import Point, Pose
-from affcli.core.observation import Movement
+from affcli.core.observation import Movement, SensorKind
 from affcli.core.task import GOAL_NUMBERS, START_NUMBERS, goal_regions, start_positions
 from affcli.core.trial import (
     Counters,
@@ -20,6 +20,7 @@ from affcli.core.trial import (
     Truth,
 )
 from affcli.lab.bench import TRIAL, Bench, stable_number, tool_named
+from affcli.lab.sensing import calibration_of
 from affcli.procedures.extension_of_reach import extension_of_reach
 from affcli.simulation.world import World
 
@@ -45,10 +46,11 @@ def run_trial(
 
     Args:
         spec: which trial.
-        settings: those of the learning run.
+        settings: those of the learning run, but for the sensor, which `spec` names.
         table: what the robot learned of `spec.tool`.
         world: any world of these settings; it is laid out anew. Sharing one saves time.
     """
+    settings = with_sensor(settings, spec.sensor)
     layout = settings.workspace.layout
     key = (TRIAL, spec.seed, spec.robot, stable_number(spec.tool), stable_number(spec.shape))
     bench = Bench.of(settings, world, *key, spec.goal, spec.start)
@@ -85,7 +87,8 @@ class LostAffordances:
     def __init__(
         self, settings: Settings, shape: str, starts: Mapping[int, tuple[Point, Pose]]
     ) -> None:
-        self._bench = Bench.of(settings, World(settings.workspace, settings.physics), 0)
+        world = World(settings.workspace, settings.physics)
+        self._bench = Bench.of(with_sensor(settings, "exact"), world, TRIAL, 0, 0)
         self._bench.world.tool = tool_named(settings, shape)
         self._starts = starts
         self._known: dict[int, bool] = {}
@@ -121,15 +124,16 @@ def whole_trial(
     steps = tuple(
         TrialStep(record, truth, lost.lost(record.row) if lost else None) for record, truth in trial
     )
-    return TrialRecord(spec, steps, trial.end)
+    eye = calibration_of(with_sensor(settings, spec.sensor), spec.seed, spec.robot)
+    return TrialRecord(spec, steps, trial.end, eye)
 
 
 def trial_specs(
-    protocol: Protocol, tool: str, shape: str, seed: int, robot: int
+    protocol: Protocol, tool: str, shape: str, seed: int, robot: int, sensor: SensorKind
 ) -> list[TrialSpec]:
     """Return the 16 trials of one tool: 4 goals x 4 starts, each from the table as learned."""
     return [
-        TrialSpec(protocol, tool, shape, goal, start, seed, robot, Counters.AS_LEARNED)
+        TrialSpec(protocol, tool, shape, goal, start, seed, robot, Counters.AS_LEARNED, sensor)
         for goal in GOAL_NUMBERS
         for start in START_NUMBERS
     ]

@@ -6,19 +6,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from affcli.core.geometry import Point
-from affcli.core.observation import Observation
+from affcli.core.observation import Observation, SensorKind
 from affcli.core.scene import Scene
 from affcli.core.task import GoalRegion
 
 
 @dataclass(frozen=True, slots=True)
 class SensorSettings:
-    """Standard deviations of the Gaussian noise of one observation."""
+    """Which sensor; and the standard deviations of the noisy one's Gaussian noise."""
 
-    position_noise: float = 0.06
-    """On x and y of attractor, wrist and goal, each drawn by itself (in)."""
-    color_noise: float = 2.0
-    """On each colour component (0 to 255)."""
+    kind: SensorKind = "noisy"
+    position_noise: float = 0.008
+    """On x and y of attractor, wrist and goal, each drawn by itself (in): the camera's own error
+    (``experiments/camera``)."""
+    color_noise: float = 2.3
+    """On each colour component (0 to 255), likewise."""
 
 
 class NoisySensor:

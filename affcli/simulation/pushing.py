@@ -26,8 +26,9 @@ CONTACT_MARGIN = 0.02
 FAR_AWAY = Pose(1e3, 1e3)
 """Where no tool touches the puck (in)."""
 
-Moment = Callable[[float, Pose], None]
-"""Called after each physics step with the tool's travel (in) and the puck's pose."""
+Moment = Callable[[float, float, Pose], None]
+"""Called after each physics step: seconds since the push began, the tool's travel (in), the puck's
+pose."""
 
 
 class PushSimulator:
@@ -103,7 +104,7 @@ class PushSimulator:
         Raises:
             SimulationDivergedError: the engine gave a number that is not finite.
         """
-        gone = 0.0
+        gone = elapsed = 0.0
         if not whole and watch is None:
             center = Point(puck.x - wrist.x, puck.y - wrist.y)
             length = distance_of(motion)
@@ -125,9 +126,10 @@ class PushSimulator:
                 for _ in range(count):
                     self._step(stride * STEP)
                     if watch is not None:
+                        elapsed += stride * STEP
                         gone += stride * speed * STEP
-                        watch(gone, self._puck_pose())
-        self._settle(gone, watch)
+                        watch(elapsed, gone, self._puck_pose())
+        self._settle(elapsed, gone, watch)
         pose = self._puck_pose()
         if not all(map(math.isfinite, pose)):
             raise SimulationDivergedError(
@@ -160,15 +162,15 @@ class PushSimulator:
         self._space.reindex_shapes_for_body(self._puck)
         self._space.reindex_shapes_for_body(self._tool)
 
-    def _settle(self, gone: float, watch: Moment | None) -> None:
+    def _settle(self, elapsed: float, gone: float, watch: Moment | None) -> None:
         """Let the puck come to rest after the tool has stopped."""
         self._tool.velocity = (0.0, 0.0)
-        for _ in range(SETTLE_STEPS):
+        for step in range(1, SETTLE_STEPS + 1):
             if self._puck.velocity.length < REST_SPEED:
                 return
             self._step(STEP)
             if watch is not None:
-                watch(gone, self._puck_pose())
+                watch(elapsed + step * STEP, gone, self._puck_pose())
 
     def _puck_pose(self) -> Pose:
         """Return the puck's pose now."""

@@ -6,7 +6,7 @@ from affcli.core.task import GoalRegion
 from affcli.core.tool import PUCK_COLOR, Tool
 from affcli.core.workspace import Workspace
 from affcli.simulation.physics_settings import PhysicsSettings
-from affcli.simulation.pushing import PushSimulator
+from affcli.simulation.pushing import Moment, PushSimulator
 from affcli.simulation.wrist_motion import Stretch, on_grid
 
 
@@ -58,10 +58,16 @@ class World:
         center = Point(self.attractor.x - wrist.x, self.attractor.y - wrist.y)
         return not near_any(self.tool.outlines, center, self.workspace.puck.radius)
 
-    def slide(self, direction: Point, end: Point, motion: tuple[Stretch, ...]) -> None:
+    def slide(
+        self,
+        direction: Point,
+        end: Point,
+        motion: tuple[Stretch, ...],
+        watch: Moment | None = None,
+    ) -> None:
         """Slide the tool on the table to `end`; the puck goes where physics takes it."""
         simulator = self._simulator()
-        self.attractor = simulator.push(self.attractor, self.wrist, direction, motion)
+        self.attractor = simulator.push(self.attractor, self.wrist, direction, motion, watch)
         self.wrist = end
 
     def _simulator(self) -> PushSimulator:

@@ -94,6 +94,20 @@ def trapezoid_time(distance: float, speed: float, acceleration: float) -> float:
     return 2.0 * math.sqrt(distance / acceleration)
 
 
+def trapezoid_travel(elapsed: float, distance: float, speed: float, acceleration: float) -> float:
+    """Return how far a trapezoid of speed over `distance` (in) has come after some seconds."""
+    whole = trapezoid_time(distance, speed, acceleration)
+    if elapsed >= whole:
+        return distance
+    top = min(speed, math.sqrt(distance * acceleration))
+    ramp = top / acceleration
+    if elapsed <= ramp:
+        return 0.5 * acceleration * elapsed * elapsed
+    if elapsed <= whole - ramp:
+        return top * (elapsed - 0.5 * ramp)
+    return distance - 0.5 * acceleration * (whole - elapsed) ** 2
+
+
 def stop_at_edge(reach: Reach, start: Point, end: Point) -> Point:
     """Return how far a straight motion from `start` toward `end` gets before the reach ends.
 

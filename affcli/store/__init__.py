@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         SuccessCount,
         TrialResult,
     )
+    from affcli.store.scenes import StepScene
     from affcli.store.trials import SessionInfo, SessionKind
 
 __all__ = [
@@ -35,6 +36,7 @@ __all__ = [
     "RowUse",
     "SessionInfo",
     "SessionKind",
+    "StepScene",
     "Store",
     "StoredStep",
     "SuccessCount",
@@ -56,6 +58,7 @@ _HOMES = {
     "results": (
         *("BehaviorGroup", "OutcomeCount", "RowUse", "StoredStep", "SuccessCount", "TrialResult"),
     ),
+    "scenes": ("StepScene",),
     "trials": ("SessionInfo", "SessionKind"),
 }
 """Which file each public name lives in."""

@@ -8,7 +8,7 @@ from affcli.errors import DatabaseError, one_line
 APPLICATION_ID = int.from_bytes(b"affc", "big")
 """``PRAGMA application_id`` of affcli's databases."""
 
-REVISION = "0001"
+REVISION = "0002"
 """The revision of ``migrations/`` that this code reads and writes."""
 
 RELATIONS = frozenset(

@@ -104,6 +104,7 @@ class LearningRuns(Connected):
         *,
         done: bool,
         now: str,
+        calibration: str | None = None,
     ) -> bool:
         """Save a chunk of a run, its rows and its checkpoint in one transaction.
 
@@ -115,6 +116,7 @@ class LearningRuns(Connected):
             robot_seconds: the robot clock after the last of them.
             done: the run is over.
             now: ISO text, UTC.
+            calibration: of the camera that the robot sees through, as JSON; None without one.
 
         Returns:
             False when another process, computing the same run, has stored more than `after_step`
@@ -142,6 +144,7 @@ class LearningRuns(Connected):
                     checkpoint=None if done or checkpoint is None else to_json(checkpoint),
                     status="done" if done else "running",
                     finished_at=now if done else None,
+                    calibration=calibration,
                 )
             )
             return True

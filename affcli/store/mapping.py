@@ -151,7 +151,7 @@ def learning_spec_from(row: "RowMapping") -> LearningSpec:
     )
 
 
-def trial_row(session: int, run: int, spec: TrialSpec) -> TrialRow:
+def trial_row(session: int, run: int, spec: TrialSpec, calibration: str | None) -> TrialRow:
     """Return the row of a trial that has not ended."""
     return TrialRow(
         session_id=session,
@@ -164,6 +164,8 @@ def trial_row(session: int, run: int, spec: TrialSpec) -> TrialRow:
         start=spec.start,
         seed=spec.seed,
         counters=spec.counters,
+        sensor=spec.sensor,
+        calibration=calibration,
     )
 
 

@@ -62,10 +62,12 @@ class PackedRobot:
     Args:
         robot: its number.
         runs: what it learned and how it was tested, by tool.
+        calibration: of its camera, as JSON; None without one.
     """
 
     robot: int
     runs: tuple[PackedRun, ...]
+    calibration: str | None
 
 
 def pack_robot(record: RobotRecord) -> PackedRobot:
@@ -84,13 +86,13 @@ def pack_robot(record: RobotRecord) -> PackedRobot:
                 trials=tuple(pack_trial(t) for t in record.trials if t.spec.tool == spec.tool),
             )
         )
-    return PackedRobot(record.robot, tuple(runs))
+    return PackedRobot(record.robot, tuple(runs), record.calibration)
 
 
 def pack_trial(trial: TrialRecord) -> PackedTrial:
     """Return a trial as rows."""
     return PackedTrial(
-        row=trial_row(0, 0, trial.spec)._replace(**trial_end_columns(trial.end)),
+        row=trial_row(0, 0, trial.spec, trial.calibration)._replace(**trial_end_columns(trial.end)),
         steps=tuple(tuple(step_row(0, 0, *step))[2:] for step in trial.steps),
         tried=tuple(step.record.row.step for step in trial.steps),
     )

@@ -2,10 +2,11 @@
 
 from affcli.store.learning import LearningRuns
 from affcli.store.results import Results
+from affcli.store.scenes import Scenes
 from affcli.store.trials import Trials
 
 
-class Store(LearningRuns, Trials, Results):
+class Store(LearningRuns, Trials, Results, Scenes):
     """An open database: learning runs, trials, and results for reports.
 
     Every method is one transaction and returns plain values; no row or connection leaves the store.

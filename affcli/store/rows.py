@@ -43,6 +43,7 @@ class LearningRunRow(NamedTuple):
     checkpoint: str | None
     started_at: str
     finished_at: str | None
+    calibration: str | None = None
 
 
 class BehaviorRow(NamedTuple):
@@ -100,6 +101,8 @@ class TrialRow(NamedTuple):
     last_rows_probable: int | None = None
     last_rows_reachable: int | None = None
     last_rows_nearest: int | None = None
+    sensor: str = "noisy"
+    calibration: str | None = None
 
 
 class StepRow(NamedTuple):

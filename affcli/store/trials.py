@@ -128,16 +128,20 @@ class Trials(Connected):
                 .values(status="done", finished_at=now)
             )
 
-    def begin_trial(self, session_id: int, run_id: int, spec: TrialSpec) -> int:
+    def begin_trial(
+        self, session_id: int, run_id: int, spec: TrialSpec, calibration: str | None = None
+    ) -> int:
         """Return the id of a new trial without steps.
 
         Args:
             session_id: the session it is part of.
             run_id: the learning run whose table it starts from.
             spec: which trial.
+            calibration: of the camera it sees through, as JSON; None without one.
         """
+        row = trial_row(session_id, run_id, spec, calibration)
         with self.writing() as connection:
-            return insert_one(connection, trial, trial_row(session_id, run_id, spec))
+            return insert_one(connection, trial, row)
 
     def save_step(
         self, trial_id: int, spec: TrialSpec, record: StepRecord, truth: Truth, affordance_id: int
@@ -226,6 +230,7 @@ class Trials(Connected):
                     redraws=run.redraws,
                     robot_seconds=run.robot_seconds,
                     finished_at=now,
+                    calibration=packed.calibration,
                 )
                 run_id = insert_one(connection, learning_run, row)
                 insert_many(connection, behavior, [(run_id, *row) for row in run.behaviors])

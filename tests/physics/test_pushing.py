@@ -68,7 +68,7 @@ def deepest_overlap(case: Case, by: PushSimulator) -> float:
     """Return the largest overlap of tool and puck at any moment of a push (in), by shapely."""
     moments: list[tuple[float, float, float]] = []
 
-    def watch(gone: float, puck: Pose) -> None:
+    def watch(elapsed: float, gone: float, puck: Pose) -> None:
         moments.append((gone, puck.x, puck.y))
 
     by.push(case.puck, case.wrist, case.direction, case.motion, watch)

@@ -1,0 +1,50 @@
+"""Files that commands write where the user asks for them."""
+
+import os
+import tempfile
+from pathlib import Path
+
+from affcli.errors import BadInputError, one_line
+
+
+def require_new(path: Path, *, force: bool) -> None:
+    """Refuse to write over something, before any work is done for it.
+
+    Raises:
+        BadInputError: there is something at `path` and `force` was not given; or it is no file, or
+            its folder does not exist.
+    """
+    shown = one_line(path)
+    try:
+        exists, is_file, folder = path.exists(), path.is_file(), path.absolute().parent.is_dir()
+    except (OSError, ValueError) as error:
+        raise BadInputError(f"{shown}: {one_line(error)}; name another file") from error
+    if exists and not is_file:
+        raise BadInputError(f"{shown}: not a file; name another")
+    if exists and not force:
+        raise BadInputError(f"{shown}: exists already; name another file, or give --force")
+    if not folder:
+        raise BadInputError(f"{shown}: its folder does not exist; make it, or name another file")
+
+
+def save(path: Path, data: bytes) -> None:
+    """Write a file whole or not at all.
+
+    Raises:
+        BadInputError: it cannot be written there; what was there before is kept.
+    """
+    try:
+        handle, name = tempfile.mkstemp(dir=path.absolute().parent, prefix=f".{path.name[:40]}.")
+        temporary = Path(name)
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(data)
+            temporary.chmod(0o644)
+            temporary.replace(path)
+        except BaseException:
+            temporary.unlink(missing_ok=True)
+            raise
+    except OSError as error:
+        raise BadInputError(
+            f"{one_line(path)}: cannot be written: {error.strerror}; name another file"
+        ) from error

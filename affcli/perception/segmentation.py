@@ -1,0 +1,130 @@
+"""Colour segmentation: which pixels belong to which colour class, and the blobs they form (§4)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from affcli.core.tool import Color
+from affcli.perception.palette import LEAST_SATURATION, LEAST_VALUE, ColorClass, class_of_hue
+from affcli.perception.rendering import Picture
+
+NO_CLASS = 255
+"""The label of a pixel that belongs to no class."""
+SMALLEST_BLOB = 40
+"""Pixels; smaller ones are edges between two colours that happen to mix to a third."""
+ALIKE = 0.25
+"""A second blob of at least this share of the largest one's pixels makes a thing doubled."""
+
+
+@dataclass(frozen=True, slots=True)
+class Blob:
+    """Connected pixels of one class.
+
+    Args:
+        x, y: centroid (px).
+        area: number of pixels.
+        left, top, width, height: bounding box (px).
+    """
+
+    x: float
+    y: float
+    area: int
+    left: int
+    top: int
+    width: int
+    height: int
+
+
+@dataclass(frozen=True, slots=True)
+class Segmentation:
+    """What a picture shows, class by class.
+
+    Args:
+        picture: that was segmented.
+        classes: what was looked for.
+        labels: (height, width), 8 bits: the position of each pixel's class, or `NO_CLASS`.
+        blobs: for each class its blobs of at least `SMALLEST_BLOB` pixels, largest first.
+    """
+
+    picture: Picture
+    classes: tuple[ColorClass, ...]
+    labels: NDArray[np.uint8]
+    blobs: tuple[tuple[Blob, ...], ...]
+
+    def mask(self, position: int, blob: Blob) -> NDArray[np.uint8]:
+        """Return the pixels of a class within the bounding box of a blob: 255, and 0 elsewhere."""
+        rows, columns = slice(blob.top, blob.top + blob.height), slice(blob.left, None)
+        region = self.labels[rows, columns][:, : blob.width]
+        return np.asarray(cv2.inRange(region, (position,), (position,)), np.uint8)
+
+    def color(self, position: int, blob: Blob) -> Color:
+        """Return the mean colour of a blob's inner pixels (red, green, blue).
+
+        The pixels at its edge are left out, for they mix two colours.
+        """
+        mask = self.mask(position, blob)
+        inner = cv2.erode(mask, np.ones((3, 3), np.uint8), borderValue=0)
+        picture = self.picture[blob.top :, blob.left :][: blob.height, : blob.width]
+        blue, green, red, _ = cv2.mean(picture, inner if cv2.countNonZero(inner) else mask)
+        return Color((red, green, blue))
+
+
+class Segmenter:
+    """Sorts pixels into colour classes by hue, which uneven light does not change.
+
+    Args:
+        classes: see `palette.palette`.
+    """
+
+    def __init__(self, classes: Sequence[ColorClass]) -> None:
+        self.classes = tuple(classes)
+        found = (class_of_hue(self.classes, 360.0 * hue / 256.0) for hue in range(256))
+        self._class_of_hue = np.array([NO_CLASS if k is None else k for k in found], dtype=np.uint8)
+
+    def segment(self, picture: Picture) -> Segmentation:
+        """Return which pixels of a picture belong to which class.
+
+        Args:
+            picture: (height, width, 3), 8 bits, blue green red.
+        """
+        hsv = cv2.cvtColor(picture, cv2.COLOR_BGR2HSV_FULL)
+        least = (0.0, 255.0 * LEAST_SATURATION, 255.0 * LEAST_VALUE)
+        colored = cv2.inRange(hsv, least, (255.0, 255.0, 255.0))
+        classes = cv2.LUT(cv2.extractChannel(hsv, 0), self._class_of_hue)
+        labels = np.asarray(cv2.bitwise_or(classes, cv2.bitwise_not(colored)), np.uint8)
+        region = cv2.boundingRect(colored)
+        blobs = tuple(blobs_of(labels, k, region) for k in range(len(self.classes)))
+        return Segmentation(picture, self.classes, labels, blobs)
+
+
+def blobs_of(
+    labels: NDArray[np.uint8], position: int, region: Sequence[int], least: int = SMALLEST_BLOB
+) -> tuple[Blob, ...]:
+    """Return the blobs of one class, largest first.
+
+    Args:
+        labels: of all pixels.
+        position: which class.
+        region: where to look: left, top, width, height (px).
+        least: pixels of the smallest blob that counts.
+    """
+    left, top, width, height = region
+    if width == 0 or height == 0:
+        return ()
+    looked_at = labels[top : top + height, left : left + width]
+    mask = cv2.inRange(looked_at, (position,), (position,))
+    inner_left, inner_top, width, height = cv2.boundingRect(mask)
+    if width * height < least:
+        return ()
+    mask = mask[inner_top : inner_top + height, inner_left : inner_left + width]
+    _, _, stats, centers = cv2.connectedComponentsWithStats(mask, connectivity=4)
+    left, top = left + inner_left, top + inner_top
+    found = [
+        Blob(x + left, y + top, int(area), int(x0) + left, int(y0) + top, int(w), int(h))
+        for (x0, y0, w, h, area), (x, y) in zip(stats[1:], centers[1:].tolist(), strict=True)
+        if area >= least
+    ]
+    return tuple(sorted(found, key=lambda blob: -blob.area))

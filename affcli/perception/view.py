@@ -1,0 +1,116 @@
+"""What the camera sees beside what the robot makes of it: the pictures of Figs. 3 and 4."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from affcli.errors import BadInputError, one_line
+from affcli.perception.palette import Role
+from affcli.perception.rendering import Picture
+from affcli.perception.segmentation import Segmentation
+from affcli.perception.solids import shaded
+
+GROUND = (28, 28, 28)
+"""Colour of pixels without a class, blue green red."""
+WHITE = (245, 245, 245)
+GAP_PX = 8
+BAND_PX = 30
+"""Height of the band under the two pictures in which they are named."""
+CODECS = {".mp4": "mp4v", ".avi": "MJPG"}
+
+
+def side_by_side(seen: Segmentation, title: str) -> Picture:
+    """Return the frame and, to its right, its segmentation, with a caption under each.
+
+    Args:
+        seen: the frame and what was found in it.
+        title: what the frame shows.
+    """
+    captions = (title, "colour segmentation, with the centroids of what is located")
+    left, right = seen.picture, segmentation_picture(seen)
+    height, width = left.shape[:2]
+    page = np.full((height + BAND_PX, 2 * width + GAP_PX, 3), 255, np.uint8)
+    for caption, picture, x in zip(captions, (left, right), (0, width + GAP_PX), strict=True):
+        page[:height, x : x + width] = picture
+        _write(page, caption, (x + 6, height + BAND_PX - 9), 0.5, (30, 30, 30), outline=None)
+    return page
+
+
+def segmentation_picture(seen: Segmentation) -> Picture:
+    """Return the classes of all pixels in their colours, with the centroids that were found."""
+    colors = np.full((256, 1, 3), GROUND, np.uint8)
+    for k, one in enumerate(seen.classes):
+        colors[k, 0] = np.rint(shaded(one.color, 1.0))
+    labels = cv2.cvtColor(seen.labels, cv2.COLOR_GRAY2BGR)
+    picture = np.asarray(cv2.LUT(labels, np.ascontiguousarray(colors.reshape(1, 256, 3))), np.uint8)
+    for one, blobs in zip(seen.classes, seen.blobs, strict=True):
+        if not blobs:
+            continue
+        first = blobs[0]
+        place = (round(first.x) + 9, round(first.y) - 7)
+        if one.role is Role.TOOL:
+            # Of a tool only the colour is used: no centroid.
+            place = (first.left, first.top - 8)
+        else:
+            # A goal that something lies across is seen in several pieces.
+            for blob in blobs:
+                _cross(picture, blob.x, blob.y)
+        _write(picture, one_line(one.name, 30), place, 0.42, WHITE, outline=(0, 0, 0))
+    return picture
+
+
+def save_video(path: Path, pictures: Sequence[Picture], rate: float) -> None:
+    """Write pictures as a video.
+
+    Args:
+        path: ends in .mp4 or .avi, which decides the format.
+        pictures: all of one size.
+        rate: pictures a second.
+
+    Raises:
+        BadInputError: another ending, or it cannot be written there.
+    """
+    codec = CODECS.get(path.suffix.lower())
+    if codec is None:
+        raise BadInputError(
+            f"{one_line(path)}: name a video {' or '.join(f'*{c}' for c in CODECS)}"
+        )
+    height, width = pictures[0].shape[:2]
+    fourcc = cv2.VideoWriter.fourcc(*codec)
+    writer = cv2.VideoWriter(str(path), fourcc, rate, (width, height))
+    try:
+        if not writer.isOpened():
+            raise BadInputError(
+                f"{one_line(path)}: the video cannot be written; name another place, or *.avi"
+            )
+        for picture in pictures:
+            writer.write(picture)
+    finally:
+        writer.release()
+
+
+def _cross(picture: Picture, x: float, y: float) -> None:
+    """Draw a cross at a centroid, to a sixteenth of a pixel."""
+    shift = 4
+    cx, cy, arm = round(x * 16), round(y * 16), 6 * 16
+    for color, thickness in (((0, 0, 0), 3), (WHITE, 1)):
+        for dx, dy in ((arm, 0), (0, arm)):
+            ends = (cx - dx, cy - dy), (cx + dx, cy + dy)
+            cv2.line(picture, *ends, color, thickness, cv2.LINE_AA, shift)
+
+
+def _write(
+    picture: Picture,
+    text: str,
+    place: tuple[int, int],
+    size: float,
+    color: tuple[int, int, int],
+    outline: tuple[int, int, int] | None,
+) -> None:
+    """Write a line of text, its baseline beginning at `place`."""
+    font = cv2.FONT_HERSHEY_SIMPLEX
+    if outline is not None:
+        cv2.putText(picture, text, place, font, size, outline, 3, cv2.LINE_AA)
+    cv2.putText(picture, text, place, font, size, color, 1, cv2.LINE_AA)
