@@ -18,9 +18,7 @@ from affcli.procedures.extension_of_reach import TrialLimits
 from affcli.simulation.physics_settings import PhysicsSettings
 
 CHOICES = {"sensor.kind": SENSOR_KINDS}
-MAY_BE_NEGATIVE = frozenset(
-    {"arm.shoulder_min_degrees", "camera.distortion_per_mm2", "camera.x", "camera.y"}
-)
+MAY_BE_NEGATIVE = frozenset({"arm.shoulder_min_degrees", "camera.x", "camera.y"})
 MAY_BE_ZERO = frozenset(
     {
         "arm.flange_height",
@@ -37,7 +35,11 @@ MAY_BE_ZERO = frozenset(
         "motion.grasp_time",
     }
 )
-AT_LEAST = {"physics.collision_slop": 1e-9, "physics.overlap_mended": 1e-6}
+AT_LEAST = {
+    "camera.distortion_per_mm2": -0.05,
+    "physics.collision_slop": 1e-9,
+    "physics.overlap_mended": 1e-6,
+}
 AT_MOST = {
     "arm.waist_max_degrees": 90.0,
     "arm.elbow_max_degrees": 180.0,

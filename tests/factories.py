@@ -13,7 +13,7 @@ from affcli.core.observation import Movement, Observation
 from affcli.core.task import GoalRegion
 from affcli.core.tool import PUCK_COLOR, TOOL_COLORS, Color, ToolName
 from affcli.core.trial import LearningSpec
-from affcli.lab.bench import Bench, tool_named
+from affcli.lab.bench import LEARNING, Bench, tool_named
 from affcli.simulation.world import World
 
 TOOL_COLOR = TOOL_COLORS[ToolName("t-hook")]
@@ -85,10 +85,11 @@ def goal_at(x: float, y: float, half_width: float = 2.0) -> GoalRegion:
     return GoalRegion(1, Point(x, y), half_width)
 
 
-def bench_with(tool: str, *key: int, settings: Settings | None = None) -> Bench:
+def bench_with(tool: str, seed: int = 0, *words: int, settings: Settings | None = None) -> Bench:
     """Return a robot at a table of its own, with a tool in its hand at the table's centre."""
     settings = settings or Settings()
-    bench = Bench.of(settings, World(settings.workspace, settings.physics), *(key or (0,)))
+    world = World(settings.workspace, settings.physics)
+    bench = Bench.of(settings, world, LEARNING, seed, 0, *words)
     bench.world.tool = tool_named(settings, tool)
     return bench
 

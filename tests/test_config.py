@@ -11,15 +11,16 @@ from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
 from affcli.config import Settings, load_settings, settings_from_json, settings_with
+from affcli.core.observation import SENSOR_KINDS
 from affcli.errors import BadInputError
 
 DEFAULTS: dict[str, dict[str, Any]] = json.loads(Settings().to_json())
 SECTIONS = {
     *("arm", "tools", "puck", "friction", "layout", "motion", "table"),
-    *("sensor", "physics", "babbling", "trial"),
+    *("sensor", "camera", "physics", "babbling", "trial"),
 }
 KEYS = [(section, key) for section, values in DEFAULTS.items() for key in values]
-keys = st.sampled_from(KEYS)
+keys = st.sampled_from([(s, k) for s, k in KEYS if not isinstance(DEFAULTS[s][k], str)])
 
 
 def written(tmp_path: Path, text: str) -> Path:
@@ -41,9 +42,11 @@ def refused(tmp_path: Path, text: str) -> str:
     return message
 
 
-def other_value(section: str, key: str) -> float | int:
+def other_value(section: str, key: str) -> float | int | str:
     """Return a value that this key may have and that is not its default."""
     value = DEFAULTS[section][key]
+    if isinstance(value, str):
+        return next(kind for kind in SENSOR_KINDS if kind != value)
     if isinstance(value, int):
         return value + 1
     return float(value) * 0.75 if value else 0.125
@@ -63,14 +66,15 @@ def test_an_empty_file_changes_nothing(tmp_path: Path) -> None:
     assert load_settings(written(tmp_path, "# nothing\n[arm]\n[babbling]\n")) == Settings()
 
 
-def test_the_sections_are_those_of_the_geometry_and_the_four_beside_it() -> None:
+def test_the_sections_are_those_of_the_geometry_and_the_five_beside_it() -> None:
     assert set(DEFAULTS) == SECTIONS
 
 
 def test_every_key_can_be_overridden_and_nothing_else_changes(tmp_path: Path) -> None:
     for section, key in KEYS:
         value = other_value(section, key)
-        changed = values_of(load_settings(written(tmp_path, f"[{section}]\n{key} = {value}\n")))
+        text = f"[{section}]\n{key} = {json.dumps(value)}\n"
+        changed = values_of(load_settings(written(tmp_path, text)))
         assert changed[section][key] == value
         changed[section][key] = DEFAULTS[section][key]
         assert changed == DEFAULTS
@@ -200,12 +204,14 @@ def test_what_is_no_number_in_range_is_refused_for_every_key(tmp_path: Path, val
         assert f"{section}.{key} = " in refused(tmp_path, f"[{section}]\n{key} = {value}\n")
 
 
-def test_negative_numbers_are_refused_but_for_the_one_angle_that_may_be(tmp_path: Path) -> None:
+def test_negative_numbers_are_refused_but_for_an_angle_and_places(tmp_path: Path) -> None:
+    negative = {("arm", "shoulder_min_degrees"), ("camera", "x"), ("camera", "y")}
     for section, key in KEYS:
         text = f"[{section}]\n{key} = -1\n"
-        if (section, key) == ("arm", "shoulder_min_degrees"):
-            arm = load_settings(written(tmp_path, text)).workspace.arm
-            assert arm.shoulder_min_degrees == -1.0
+        if (section, key) in negative:
+            assert values_of(load_settings(written(tmp_path, text)))[section][key] == -1.0
+        elif (section, key) == ("sensor", "kind"):
+            assert "sensor.kind = -1 must be one of noisy" in refused(tmp_path, text)
         else:
             assert f"{section}.{key} = -1 must lie in" in refused(tmp_path, text)
 

@@ -8,6 +8,7 @@ import pytest
 
 from affcli.store import open_store
 
+CAMERA = {"cv2", "scipy", "PIL"}
 RUN = """\
 import sys
 from affcli.cli.main import main
@@ -41,8 +42,8 @@ def empty(tmp_path: Path) -> Path:
 
 
 def test_help_imports_nothing_heavy() -> None:
-    heavy = {"numpy", "sqlalchemy", "pymunk", "alembic", "scipy", "sqlite3", "rich.table"}
-    for args in (("--help",), ("--version",), ("learn", "--help")):
+    heavy = {"numpy", "sqlalchemy", "pymunk", "alembic", "sqlite3", "rich.table", *CAMERA}
+    for args in (("--help",), ("--version",), ("learn", "--help"), ("camera", "view", "--help")):
         assert not imported_by(*args) & heavy
 
 
@@ -61,6 +62,15 @@ def test_learning_in_an_existing_database_imports_no_alembic(empty: Path, tmp_pa
     assert "alembic" not in modules
     assert {"numpy", "pymunk", "sqlalchemy"} <= modules
     assert "rich.progress" not in modules  # there is no terminal to show it on
+
+
+def test_the_camera_s_libraries_load_only_to_look_through_it(empty: Path) -> None:
+    learn = ("learn", "--tool", "stick", "--behaviors", "5", "--db", empty)
+    assert not imported_by(*learn) & CAMERA
+    assert not imported_by(*learn, "--sensor", "exact") & CAMERA
+    assert not imported_by("report", "--db", empty) & CAMERA
+    assert {"cv2", "scipy"} <= imported_by(*learn, "--sensor", "camera")
+    assert "pymunk" not in imported_by("camera", "calibrate")
 
 
 def test_the_tests_libraries_stay_with_the_tests(empty: Path) -> None:

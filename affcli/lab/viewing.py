@@ -73,7 +73,7 @@ def view_of_table(settings: Settings, seed: int) -> View:
         tool_named(settings, "t-hook"),
         goal_regions(layout)[4],
     )
-    return View("The beginning of a trial with the t-hook", _seen(scene, settings, seed, 0, VIEW))
+    return View("The beginning of a trial with the t-hook", _seen(scene, settings, seed, 0, VIEW, seed))
 
 
 def view_of_step(step: "StepScene", trial: int, *, after: bool) -> View:

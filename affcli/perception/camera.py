@@ -191,7 +191,7 @@ def distorted(undistorted: Array, kappa: float) -> Array:
     radius = ideal.copy()
     if kappa < 0.0:
         turn = 1.0 / math.sqrt(-3.0 * kappa)
-        inside = ideal < turn * (1.0 + kappa * turn**2)
+        inside = ideal < turn * 2.0 / 3.0
         radius = np.minimum(ideal, 0.9 * turn)
     for _ in range(NEWTON_STEPS):
         slope = 1.0 + 3.0 * kappa * radius**2

@@ -32,7 +32,7 @@ class CameraSettings:
     blur_px: float = 0.5
     """Standard deviation of the blur."""
     uneven_light: float = 0.1
-    """The light is this much brighter at one corner of the picture and dimmer at another."""
+    """The light differs from its mean by at most this share, at a corner of the picture."""
 
     def camera(self) -> Camera:
         """Return the camera as it truly is; the robot has to calibrate to know it."""

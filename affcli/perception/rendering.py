@@ -94,14 +94,16 @@ class Renderer:
         ends = np.cumsum([*counts, *counts])[:-1]
         pieces = np.split(corners, ends)
         bottoms, tops = pieces[: len(prisms)], pieces[len(prisms) :]
-        region = self._region(corners)
+        region = self._region(corners[np.isfinite(corners).all(axis=1)])
         if region is not None:
             rows, columns = region
             fine = _finer(plain[region])
             corner = np.array([columns.start, rows.start])
             for prism, bottom, top in zip(prisms, bottoms, tops, strict=True):
+                both = np.concatenate([bottom, top]).astype(np.float32)
+                if not np.isfinite(both).all():
+                    continue  # behind the camera
                 if prism.top > prism.bottom:
-                    both = np.concatenate([bottom, top]).astype(np.float32)
                     hull = cv2.convexHull(both)[:, 0] - corner
                     _fill(fine, hull, shaded(prism.color, SIDE_SHADE))
                 _fill(fine, top - corner, shaded(prism.color, 1.0))
@@ -116,6 +118,8 @@ class Renderer:
 
     def _region(self, pixels: Array) -> tuple[slice, slice] | None:
         """Return the rows and columns around `pixels` that lie in the picture, None when none."""
+        if not len(pixels):
+            return None
         width, height = self._size
         low = np.floor(pixels.min(axis=0)).astype(int) - MARGIN
         high = np.ceil(pixels.max(axis=0)).astype(int) + MARGIN + 1
@@ -168,8 +172,6 @@ class Renderer:
 def _fill(picture: Picture, corners: Array, color: tuple[float, float, float]) -> None:
     """Fill a polygon whose corners (n, 2) are given in pixels of the picture that is not fine."""
     fine = (corners + 0.5) * FINE - 0.5
-    if not np.isfinite(fine).all():
-        return
     fixed = np.rint(fine * 2**FRACTION_BITS).astype(np.int32)
     cv2.fillPoly(picture, [fixed], color, cv2.LINE_8, FRACTION_BITS)
 

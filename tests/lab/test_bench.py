@@ -11,7 +11,7 @@ from affcli.config import Settings
 from affcli.core.behavior import EXTEND_ARM, BehaviorCall
 from affcli.core.geometry import Point, Pose
 from affcli.core.tool import TOOL_PARTS
-from affcli.lab.bench import Bench, missing_side, stable_number, tool_named
+from affcli.lab.bench import LEARNING, Bench, missing_side, stable_number, tool_named
 from affcli.simulation.world import World
 from tests.factories import bench_with, goal_at
 from tests.lab.quick import EXACT
@@ -20,14 +20,16 @@ SETTINGS = Settings()
 words = st.integers(0, 2**63 - 1)
 
 
-def drawn(*key: int) -> dict[str, list[float]]:
+def drawn(purpose: int, seed: int, robot: int, *words: int) -> dict[str, list[float]]:
     """Return the first numbers of each random stream of a bench."""
-    streams = bench_with("stick", *key).streams
+    world = World(SETTINGS.workspace, SETTINGS.physics)
+    world.tool = tool_named(SETTINGS, "stick")
+    streams = Bench.of(SETTINGS, world, purpose, seed, robot, *words).streams
     return {name: stream.random(4).tolist() for name, stream in streams.items()}
 
 
 @settings(deadline=None, max_examples=30)
-@given(st.lists(words, min_size=1, max_size=6))
+@given(st.lists(words, min_size=3, max_size=6))
 def test_random_streams_depend_on_the_key_alone(key: list[int]) -> None:
     assert drawn(*key) == drawn(*key)
 
@@ -88,12 +90,13 @@ def test_the_truth_of_a_behavior_is_where_the_attractor_was_before_and_after_it(
 def test_a_bench_keeps_no_memory_of_another_at_the_same_world() -> None:
     world = World(SETTINGS.workspace, SETTINGS.physics)
     world.tool = tool_named(SETTINGS, "stick")
-    first = Bench.of(SETTINGS, world, 1)
+    first = Bench.of(SETTINGS, world, LEARNING, 1, 0)
     first.robot.execute(first.behaviors.binding, None)
-    second = Bench.of(SETTINGS, world, 1)
+    second = Bench.of(SETTINGS, world, LEARNING, 1, 0)
     assert second.robot.clock == 0.0
     assert (
-        second.streams["noise"].random() == Bench.of(SETTINGS, world, 1).streams["noise"].random()
+        second.streams["noise"].random()
+        == Bench.of(SETTINGS, world, LEARNING, 1, 0).streams["noise"].random()
     )
 
 

@@ -154,7 +154,7 @@ def with_a_broken_tool(robot: int) -> tuple[TrialRecord, ...]:
     """Return the 16 trials of one robot whose T-hook became an L-hook."""
     steps = learned(spec_of("t-hook", 700, robot=robot))
     lost = LostAffordances(SETTINGS, "l-hook", starts_of(steps))
-    specs = trial_specs(BROKEN, "t-hook", "l-hook", 0, robot)
+    specs = trial_specs(BROKEN, "t-hook", "l-hook", 0, robot, "noisy")
     table, world = table_from(steps), fresh_world()
     return tuple(whole_trial(trial, SETTINGS, table, world, lost) for trial in specs)
 
@@ -194,7 +194,7 @@ def test_a_trial_whose_simulation_diverges_is_invalid_and_never_solved() -> None
     table, world = t_hook_table(), fresh_world(weightless)
     outcomes = [
         whole_trial(trial, weightless, table, world).end.outcome
-        for trial in trial_specs(WHOLE, "t-hook", "t-hook", 0, 0)
+        for trial in trial_specs(WHOLE, "t-hook", "t-hook", 0, 0, "noisy")
     ]
     assert outcomes.count(Outcome.INVALID) > 8
     assert Outcome.SOLVED not in outcomes
@@ -203,7 +203,7 @@ def test_a_trial_whose_simulation_diverges_is_invalid_and_never_solved() -> None
 def test_there_are_4_goals_with_4_starts_each_from_the_table_as_learned() -> None:
     """§7.1: "4 goals x 4 attractor positions"; §7.2: "4 goal regions x 4 initial attractor
     positions"."""
-    specs = trial_specs(BROKEN, "t-hook", "l-hook", 5, 7)
+    specs = trial_specs(BROKEN, "t-hook", "l-hook", 5, 7, "noisy")
     assert len(specs) == len({(s.goal, s.start) for s in specs}) == 16
     assert {s.goal for s in specs} == {s.start for s in specs} == {1, 2, 3, 4}
     assert {s.counters for s in specs} == {Counters.AS_LEARNED}

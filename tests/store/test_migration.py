@@ -11,23 +11,28 @@ import pytest
 
 import affcli
 from affcli.errors import DatabaseError
+from affcli.lab.learning import learn
+from affcli.lab.solving import SolvedTrial, solve
 from affcli.store import database_info, open_store, run_sql, upgrade
 from affcli.store.identity import REVISION
 from affcli.store.migrate import migrations_folder
+from affcli.store.rows import TrialRow
 from tests.store.records import learned
 
-NEXT = """
+LATER = f"{int(REVISION) + 1:04}"
+"""The revision that comes after the newest."""
+NEXT = f"""
 from alembic import op
 
-revision = "0002"
-down_revision = "0001"
+revision = "{LATER}"
+down_revision = "{REVISION}"
 branch_labels = depends_on = None
 
 
 def upgrade() -> None:
     op.execute("ALTER TABLE learning_run ADD COLUMN remark TEXT")
     op.execute("CREATE TABLE later (id INTEGER PRIMARY KEY)")
-    {more}
+    {{more}}
 """
 
 
@@ -36,10 +41,10 @@ def later_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A later version of affcli, with a folder of migrations that holds one more."""
     folder = tmp_path / "100% later" / "migrations"
     shutil.copytree(migrations_folder(), folder, ignore=shutil.ignore_patterns("__pycache__"))
-    (folder / "versions" / "0002_next.py").write_text(NEXT.format(more=""))
+    (folder / "versions" / f"{LATER}_next.py").write_text(NEXT.format(more=""))
     monkeypatch.setattr("affcli.store.migrate.migrations_folder", lambda: folder)
     for module in ("identity", "opening", "info"):
-        monkeypatch.setattr(f"affcli.store.{module}.REVISION", "0002")
+        monkeypatch.setattr(f"affcli.store.{module}.REVISION", LATER)
     return folder
 
 
@@ -88,11 +93,11 @@ def test_packaged_migrations_go_before_those_of_the_checkout(
 
 
 def test_an_older_database_is_upgraded_and_then_used(database: Path, later_code: Path) -> None:
-    with pytest.raises(DatabaseError, match="at revision 0001, this affcli needs 0002"):
+    with pytest.raises(DatabaseError, match=f"at revision {REVISION}, this affcli needs {LATER}"):
         run_sql(database, "select 1")
-    assert upgrade(database) == ("0001", "0002")
-    assert upgrade(database) == ("0002", "0002")
-    assert database_info(database).revision == "0002"
+    assert upgrade(database) == (REVISION, LATER)
+    assert upgrade(database) == (LATER, LATER)
+    assert database_info(database).revision == LATER
     with open_store(database, create=False, write=True) as store:
         learned(store)
     assert run_sql(database, "select count(*) from later").rows == ((0,),)
@@ -101,7 +106,7 @@ def test_an_older_database_is_upgraded_and_then_used(database: Path, later_code:
 def test_a_new_database_gets_all_revisions(tmp_path: Path, later_code: Path) -> None:
     with open_store(tmp_path / "new.db", create=True, write=True):
         pass
-    assert database_info(tmp_path / "new.db").revision == "0002"
+    assert database_info(tmp_path / "new.db").revision == LATER
 
 
 def test_an_older_schema_is_not_upgraded_unasked(database: Path, later_code: Path) -> None:
@@ -116,12 +121,60 @@ def test_an_older_schema_is_not_upgraded_unasked(database: Path, later_code: Pat
 
 def test_a_migration_that_fails_leaves_the_old_schema(database: Path, later_code: Path) -> None:
     before = schema(database)
-    broken = later_code / "versions" / "0002_next.py"
+    broken = later_code / "versions" / f"{LATER}_next.py"
     broken.write_text(NEXT.format(more='op.execute("INSERT INTO nowhere VALUES (1)")'))
     with pytest.raises(Exception, match="no such table: nowhere"):
         upgrade(database)
     assert schema(database) == before
-    assert run_sql_raw(database, "SELECT version_num FROM alembic_version") == [("0001",)]
+    assert run_sql_raw(database, "SELECT version_num FROM alembic_version") == [(REVISION,)]
+
+
+DATABASES = Path(__file__).parent / "databases"
+"""A database of every past revision, made by the affcli of its time."""
+KEPT = ("session", "learning_run", "behavior", "affordance", "trial", "step")
+
+
+@pytest.mark.parametrize("revision", [f"{k:04}" for k in range(1, int(REVISION))])
+def test_a_database_of_every_past_revision_is_upgraded_and_then_used(
+    revision: str, tmp_path: Path
+) -> None:
+    """Nothing is lost, the view reads as before, and the robot goes on with what it learned."""
+    old = Path(shutil.copy(DATABASES / f"{revision}.db", tmp_path / "old.db"))
+    old.chmod(0o644)
+    view = "SELECT * FROM affordance_table ORDER BY id"
+    before = run_sql_raw(old, view)
+    counts = {name: run_sql_raw(old, f"SELECT count(*) FROM {name}") for name in KEPT}
+    assert upgrade(old) == (revision, REVISION)
+    assert run_sql_raw(old, view) == before
+    assert {name: run_sql_raw(old, f"SELECT count(*) FROM {name}") for name in KEPT} == counts
+    assert all(rows > [(0,)] for rows in counts.values())
+    with open_store(old, create=False, write=True) as store:
+        run = store.latest_run("t-hook")
+        assert run is not None
+        table, ids = store.affordance_table(run.id)
+        assert len(table) == len(ids) == run.rows
+        assert all(t.sensor == "noisy" for t in map(TrialRow._make, old_trials(old)))
+
+
+def old_trials(path: Path) -> list[tuple[object, ...]]:
+    """Return the trials of a database, as the code's rows have their columns."""
+    return run_sql_raw(path, f"SELECT {', '.join(TrialRow._fields)} FROM trial")
+
+
+def test_an_upgraded_database_solves_and_learns(tmp_path: Path) -> None:
+    old = Path(shutil.copy(DATABASES / "0001.db", tmp_path / "old.db"))
+    old.chmod(0o644)
+    upgrade(old)
+    with open_store(old, create=False, write=True) as store:
+        run = store.latest_run("t-hook")
+        assert run is not None
+        ended = [
+            event
+            for event in solve(store, [run], 4, [1], 0, lambda: "now")
+            if isinstance(event, SolvedTrial)
+        ]
+        assert len(ended) == 1
+        assert not learn(store, run.spec, lambda: "now").new
 
 
 LOADED = """

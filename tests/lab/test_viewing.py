@@ -1,0 +1,76 @@
+"""Pictures and films of stored steps show what happened in them."""
+
+import numpy as np
+import pytest
+
+from affcli.config import Settings, settings_from_json
+from affcli.core.scene import Scene
+from affcli.errors import UsageError
+from affcli.lab.learning import learn
+from affcli.lab.solving import solve
+from affcli.lab.viewing import FRAME_RATE, scenes_of_step, view_of_step, view_of_table
+from affcli.store import StepScene, Store, run_sql
+from tests.lab.quick import now, spec_of
+
+
+@pytest.fixture
+def steps(store: Store) -> list[StepScene]:
+    """The steps of a trial with the T-hook."""
+    learned = learn(store, spec_of(behaviors=400), now)
+    list(solve(store, [learned.info], 1, [1], 0, now))
+    (count,) = run_sql(store.path, "select steps from trial").rows[0]
+    assert isinstance(count, int)
+    return [store.step_scene(1, number) for number in range(1, count + 1)]
+
+
+def test_a_film_of_a_step_runs_from_its_beginning_to_its_end(steps: list[StepScene]) -> None:
+    """15 frames a robot second; the tool is carried lifted, and the puck moves as it did then."""
+    assert steps
+    for step in steps:
+        film = scenes_of_step(step, settings_from_json(step.settings))
+        first, last = film[0], film[-1]
+        home = settings_from_json(step.settings).workspace.wrist_start
+        assert first.wrist == pytest.approx(step.wrist_before or home, abs=1e-5)
+        assert first.attractor.point == step.attractor_start
+        if step.blocked:
+            continue
+        assert last.wrist == pytest.approx(step.wrist_end, abs=0.3)
+        assert last.attractor.point == pytest.approx(step.attractor_end, abs=0.02)
+        lifts = [scene.lift for scene in film]
+        assert lifts[0] == 0.0
+        assert max(lifts) == pytest.approx(1.6, abs=0.3)
+        assert lifts[-1] == 0.0
+        seconds = len(film) / FRAME_RATE
+        assert 1.0 < seconds < 20.0
+        assert largest_leap(film) <= 12.5 / FRAME_RATE + 0.1
+
+
+def largest_leap(film: list[Scene]) -> float:
+    """Return how far the wrist moves between two frames at the most (in)."""
+    places = np.array([scene.wrist for scene in film])
+    return float(np.linalg.norm(np.diff(places, axis=0), axis=1).max())
+
+
+def test_before_and_after_a_step_the_puck_is_where_it_was(steps: list[StepScene]) -> None:
+    step = steps[0]
+    for after, truth in ((False, step.attractor_start), (True, step.attractor_end)):
+        view = view_of_step(step, 1, after=after)
+        assert f"step 1 of {len(steps)}, {'after' if after else 'before'} {step.call}" in view.title
+        (blob,) = view.seen.blobs[0]
+        pixel = Settings().camera.camera().project(np.array([[*truth, 0.5]]))[0]
+        assert (blob.x, blob.y) == pytest.approx(pixel, abs=2.0)
+
+
+def test_a_view_is_the_same_every_time() -> None:
+    first, second, other = (view_of_table(Settings(), seed) for seed in (0, 0, 1))
+    assert first.png(frame_alone=True) == second.png(frame_alone=True)
+    assert first.png(frame_alone=True) != other.png(frame_alone=True)
+    assert first.png(frame_alone=False) != first.png(frame_alone=True)
+
+
+@pytest.mark.usefixtures("steps")
+def test_steps_and_trials_that_are_not_there(store: Store) -> None:
+    with pytest.raises(UsageError, match="no trial 9; trials are 1 to 1"):
+        store.step_scene(9, 1)
+    with pytest.raises(UsageError, match="no step 99 in trial 1; it has steps 1 to"):
+        store.step_scene(1, 99)

@@ -1,0 +1,127 @@
+"""The markers: found by colour, ordered into the grid from any view."""
+
+import cv2
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from affcli.core.geometry import Point
+from affcli.core.tool import Color
+from affcli.core.workspace import Workspace
+from affcli.errors import BadInputError
+from affcli.perception.camera import Array, Camera
+from affcli.perception.camera_sensor import MARKER_RADIUS, picture_of_pattern, table_pattern
+from affcli.perception.camera_settings import CameraSettings
+from affcli.perception.markers import Pattern, find_markers, ordered
+from affcli.perception.palette import MARKER_COLOR
+from affcli.perception.rendering import Picture, Renderer
+from tests.perception.views import PATTERN, SENSOR, cameras, flat
+
+CAMERA = CameraSettings()
+TABLE_PATTERN = table_pattern(CAMERA, Workspace())
+
+
+def picture(settings: CameraSettings = CAMERA, pattern: Pattern = TABLE_PATTERN) -> Picture:
+    renderer = Renderer(settings, Workspace())
+    return picture_of_pattern(renderer, pattern, np.random.default_rng(4))
+
+
+def painted(center: Array, color: tuple[int, int, int], radius: int = 9) -> Picture:
+    """Return the picture of the pattern with one more disc on it (blue green red)."""
+    changed = picture().copy()
+    x, y = np.rint(center).astype(int).tolist()
+    cv2.circle(changed, (x, y), radius, color, -1)
+    return changed
+
+
+@settings(deadline=None)
+@given(cameras, st.randoms(use_true_random=False))
+def test_any_view_of_all_markers_gives_the_grid(camera: Camera, random: object) -> None:
+    """Up to the quarter turn that equal markers leave open: x runs to the picture's right."""
+    places = PATTERN.places
+    pixels = flat(camera, places)
+    if not np.isfinite(pixels).all():
+        return
+    shuffled = np.random.default_rng(abs(hash(random)) % 2**32).permutation(pixels)
+    found = ordered(shuffled, PATTERN).reshape(6, 6, 2)
+    grid = pixels.reshape(6, 6, 2)
+    turned = [np.rot90(grid, k) for k in range(4)]
+    assert any(np.array_equal(found, one) for one in turned)
+    along_x = (found[:, -1] - found[:, 0]).mean(axis=0)
+    assert along_x[0] >= abs(along_x[1]) - 1e-6
+
+
+@pytest.mark.parametrize("turn", [0, 90, 180, 270])
+def test_a_turn_says_how_the_pattern_lies(turn: int) -> None:
+    """The camera turned by as much the other way sees the same order."""
+    settings = CameraSettings(x=0.0, y=21.7, tilt_degrees=0.0, turn_degrees=(-turn) % 360.0)
+    pixels = flat(settings.camera(), PATTERN.places)
+    pattern = Pattern(origin=PATTERN.origin, turn=turn)
+    assert np.allclose(ordered(pixels[::-1].copy(), pattern), pixels)
+
+
+@pytest.mark.parametrize(("columns", "rows"), [(8, 5), (3, 3), (4, 7)])
+def test_a_pattern_need_not_be_square(columns: int, rows: int) -> None:
+    pattern = Pattern(columns, rows, 3.0, Point(-8.0, 12.0))
+    settings = CameraSettings(y=0.0, height=50.0, turn_degrees=0.0)
+    pixels = flat(settings.camera(), pattern.places)
+    assert np.allclose(ordered(pixels[::-1].copy(), pattern), pixels)
+
+
+def test_points_that_form_no_grid_are_refused() -> None:
+    rng = np.random.default_rng(0)
+    with pytest.raises(BadInputError, match="no grid of 6x6"):
+        ordered(rng.uniform(0.0, 400.0, (36, 2)), PATTERN)
+    line = np.column_stack([np.arange(36.0), np.arange(36.0)])
+    with pytest.raises(BadInputError, match="lie on a line"):
+        ordered(line, PATTERN)
+
+
+@pytest.mark.parametrize("color", [None, MARKER_COLOR])
+def test_the_markers_are_found_to_a_tenth_of_a_pixel(color: Color | None) -> None:
+    found = find_markers(picture(), TABLE_PATTERN, color)
+    truth = flat(CAMERA.camera(), TABLE_PATTERN.places)
+    off = np.linalg.norm(found - truth, axis=1)
+    assert off.max() < 0.2
+    assert np.sqrt(np.mean(off**2)) < 0.1
+
+
+def test_their_colour_is_found_among_others() -> None:
+    """A few large things of other colours lie about; the markers are the many alike."""
+    changed = picture().copy()
+    cv2.rectangle(changed, (5, 5), (60, 90), (200, 60, 20), -1)
+    cv2.circle(changed, (600, 40), 25, (30, 160, 60), -1)
+    found = find_markers(changed, TABLE_PATTERN)
+    assert np.allclose(found, find_markers(picture(), TABLE_PATTERN, MARKER_COLOR), atol=0.02)
+
+
+def test_a_missing_marker_and_one_too_many_are_counted() -> None:
+    truth = flat(CAMERA.camera(), TABLE_PATTERN.places)
+    with pytest.raises(BadInputError, match="35 markers found instead of 36"):
+        find_markers(painted(truth[7], (215, 220, 222), 11), TABLE_PATTERN)
+    between = 0.5 * (truth[0] + truth[7])
+    with pytest.raises(BadInputError, match="37 markers found instead of 36"):
+        find_markers(painted(between, (40, 40, 200), 6), TABLE_PATTERN)
+
+
+def test_a_marker_cut_off_by_the_edge_is_named() -> None:
+    truth = flat(CAMERA.camera(), TABLE_PATTERN.places)
+    column = round(float(truth[:, 0].max()))
+    cut = np.ascontiguousarray(picture()[:, :column])
+    with pytest.raises(BadInputError, match=r"a marker at \(\d+, \d+\) px is cut off by the edge"):
+        find_markers(cut, TABLE_PATTERN)
+
+
+@pytest.mark.parametrize("grey", [0, 90, 255])
+def test_without_markers_there_is_nothing_to_find(grey: int) -> None:
+    blank = np.full((SENSOR.height_px, SENSOR.width_px, 3), grey, np.uint8)
+    why = "over-exposed" if grey == 255 else "paint them in one strong colour"
+    with pytest.raises(BadInputError, match=f"no markers found: .*{why}"):
+        find_markers(blank, TABLE_PATTERN)
+
+
+def test_a_marker_is_small() -> None:
+    """§4: "small color markers ... 5 inches apart"."""
+    assert 0.1 * TABLE_PATTERN.spacing >= MARKER_RADIUS
+    assert (TABLE_PATTERN.columns, TABLE_PATTERN.rows, TABLE_PATTERN.spacing) == (6, 6, 5.0)
