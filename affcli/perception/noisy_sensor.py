@@ -19,7 +19,7 @@ class SensorSettings:
     position_noise: float = 0.008
     """On x and y of attractor, wrist and goal, each drawn by itself (in): the camera's own error
     (``experiments/camera``)."""
-    color_noise: float = 2.3
+    color_noise: float = 2.4
     """On each colour component (0 to 255), likewise."""
 
 
