@@ -52,7 +52,7 @@ def calibrate(
         Path | None,
         typer.Argument(
             help="A PNG or JPEG picture of the pattern; the simulated camera if not given.",
-            metavar="[IMAGE]",
+            metavar="IMAGE",
             readable=False,
         ),
     ] = None,
@@ -85,7 +85,9 @@ def calibrate(
     force: Force = False,
     as_json: AsJson = False,
 ) -> None:
-    """Calibrate a camera by Tsai's method from one picture of coplanar markers.
+    """Calibrate a camera from a picture of markers.
+
+    By Tsai's method, from one picture of coplanar markers that form a grid.
 
     With --turn 0 the first marker is the lower left one in the picture and x runs to the right;
     each 90 turns that counter-clockwise. Equal markers cannot tell.
@@ -139,7 +141,7 @@ def locate(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Say where on the table a picture shows what is colour-coded.
+    """Say where a picture shows what is colour-coded.
 
     Without --colors the colours of the simulated table are looked for.
     """
@@ -165,7 +167,12 @@ def view(
     trial: Annotated[
         int | None, typer.Option("--trial", help="A trial's id in the database.", metavar="ID")
     ] = None,
-    step: Annotated[int, typer.Option("--step", help="Its step.", metavar="N")] = 1,
+    run: Annotated[
+        int | None, typer.Option("--run", help="A learning run's id, instead.", metavar="ID")
+    ] = None,
+    step: Annotated[
+        int, typer.Option("--step", help="Step of the trial, or behavior of the run.", metavar="N")
+    ] = 1,
     after: Annotated[
         bool, typer.Option("--after", help="After the behavior, not before it.")
     ] = False,
@@ -178,19 +185,23 @@ def view(
     config: Config = None,
     force: Force = False,
 ) -> None:
-    """Show what the camera sees, and beside it what the robot makes of it (Figs. 3 and 4).
+    """Show what the camera sees and how it is segmented.
 
-    Of a step of a trial, whatever sensor it was seen through; or of the table as a trial begins.
+    The frame, and beside it the segmentation with the centroids, as in Figs. 3 and 4.
+
+    Of a step of a trial or a behavior of a learning run, whatever sensor it was seen through; or of
+    the table as a trial begins.
     """
     checked_seed(seed)
     if out is None and video is None:
         raise UsageError("where to? give --out FILE.png, or --video FILE.mp4")
-    if video is not None and trial is None:
-        raise UsageError("a video of what? give --trial ID and --step N")
-    if trial is None and (after or step != 1):
-        raise UsageError("--step and --after go with --trial")
-    if pattern and trial is not None:
-        raise UsageError("give --pattern or --trial, not both")
+    if [trial is not None, run is not None, pattern].count(True) > 1:
+        raise UsageError("give one of --trial, --run and --pattern")
+    stored = trial is not None or run is not None
+    if video is not None and not stored:
+        raise UsageError("a video of what? give --trial ID or --run ID, and --step N")
+    if not stored and (after or step != 1):
+        raise UsageError("--step and --after go with --trial or --run")
     for path in filter(None, (out, video)):
         require_new(path, force=force)
     if out is not None and out.suffix.lower() != ".png":
@@ -202,12 +213,12 @@ def view(
 
     require_camera()
     settings = load_settings(config)
-    scene = None if trial is None else _step_scene(database, trial, step)
-    if scene is not None and trial is not None:
-        shown = view_of_step(scene, trial, after=after)
+    scene = _stored_scene(database, trial, run, step)
+    if scene is not None:
+        shown = view_of_step(scene, after=after)
         if video is not None:
-            film_of_step(scene, trial, video, frame_alone=frame)
-            say(f"Trial {trial}, step {step}: {one_line(video)}")
+            film_of_step(scene, video, frame_alone=frame)
+            say(f"{scene.title}, {scene.call}: {one_line(video)}")
     else:
         shown = view_of_pattern(settings, seed) if pattern else view_of_table(settings, seed)
     if out is not None:
@@ -215,12 +226,19 @@ def view(
         say(f"{shown.title}: {one_line(out)}")
 
 
-def _step_scene(database: Path, trial: int, step: int) -> "StepScene":
-    """Return a step of a trial from the database."""
+def _stored_scene(
+    database: Path, trial: int | None, run: int | None, step: int
+) -> "StepScene | None":
+    """Return a step of a trial or a behavior of a run from the database; None for neither."""
     from affcli.store import open_store
 
-    with open_store(database, create=False, write=False) as store:
-        return store.step_scene(trial, step)
+    if trial is not None:
+        with open_store(database, create=False, write=False) as store:
+            return store.step_scene(trial, step)
+    if run is not None:
+        with open_store(database, create=False, write=False) as store:
+            return store.behavior_scene(run, step)
+    return None
 
 
 def _grid(text: str) -> tuple[int, int]:

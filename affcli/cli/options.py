@@ -38,7 +38,9 @@ Config = Annotated[
 ]
 Sensor = Annotated[
     str | None,
-    typer.Option("--sensor", help="noisy, exact or camera.", metavar="KIND"),
+    typer.Option(
+        "--sensor", help="noisy, exact or camera; else as set, or learned.", metavar="KIND"
+    ),
 ]
 
 

@@ -73,11 +73,13 @@ def view_of_table(settings: Settings, seed: int) -> View:
         tool_named(settings, "t-hook"),
         goal_regions(layout)[4],
     )
-    return View("The beginning of a trial with the t-hook", _seen(scene, settings, seed, 0, VIEW, seed))
+    return View(
+        "The beginning of a trial with the t-hook", _seen(scene, settings, seed, 0, VIEW, seed)
+    )
 
 
-def view_of_step(step: "StepScene", trial: int, *, after: bool) -> View:
-    """Return the table as it was before a step's exploratory behavior, or after it."""
+def view_of_step(step: "StepScene", *, after: bool) -> View:
+    """Return the table as it was before an exploratory behavior, or after it."""
     settings = settings_from_json(step.settings)
     scene = _scene(step, settings)
     if after:
@@ -86,15 +88,15 @@ def view_of_step(step: "StepScene", trial: int, *, after: bool) -> View:
         attractor, wrist = step.attractor_start, step.wrist_start
     scene = replace(scene, attractor=Pose(*attractor), wrist=wrist)
     moment = "after" if after else "before"
-    what = f"Trial {trial}, step {step.number} of {step.steps}, {moment} {step.call}"
-    return View(what, _seen(scene, settings, step.seed, step.robot, VIEW, trial, step.number))
+    what = f"{step.title}, {moment} {step.call}"
+    return View(what, _seen(scene, settings, step.seed, step.robot, VIEW, *step.key))
 
 
-def film_of_step(step: "StepScene", trial: int, path: Path, *, frame_alone: bool) -> None:
+def film_of_step(step: "StepScene", path: Path, *, frame_alone: bool) -> None:
     """Write what the camera saw during a step as a video, 15 frames a robot second.
 
-    The step is executed again from its record: the tool is carried to where it began, then comes
-    the exploratory behavior, unless the tool could not be lowered.
+    It is executed again from its record: the tool is carried to where it began, then comes the
+    exploratory behavior, unless the tool could not be lowered.
 
     Raises:
         BadInputError: the video cannot be written there.
@@ -102,9 +104,9 @@ def film_of_step(step: "StepScene", trial: int, path: Path, *, frame_alone: bool
     from affcli.perception.view import save_video, side_by_side
 
     settings = settings_from_json(step.settings)
-    rng = np.random.Generator(np.random.PCG64((VIEW, step.seed, trial, step.number)))
+    rng = np.random.Generator(np.random.PCG64((VIEW, *step.key)))
     eye = eye_of(settings, step.seed, step.robot)
-    title = f"Trial {trial}, step {step.number} of {step.steps}, {step.call}"
+    title = f"{step.title}, {step.call}"
     pictures = []
     for scene in scenes_of_step(step, settings):
         picture = eye.renderer.take(scene, rng)
@@ -140,12 +142,13 @@ def scenes_of_step(step: "StepScene", settings: Settings) -> list[Scene]:
 def _scene(step: "StepScene", settings: Settings) -> Scene:
     """Return the scene in which a step began."""
     believed = tool_named(settings, step.tool)
+    goals = goal_regions(settings.workspace.layout)
     return Scene(
         Pose(*step.attractor_start),
         PUCK_COLOR,
         step.wrist_start,
         tool_named(settings, step.shape).painted(believed.color),
-        goal_regions(settings.workspace.layout)[step.goal],
+        None if step.goal is None else goals[step.goal],
     )
 
 

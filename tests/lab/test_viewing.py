@@ -45,6 +45,21 @@ def test_a_film_of_a_step_runs_from_its_beginning_to_its_end(steps: list[StepSce
         assert largest_leap(film) <= 12.5 / FRAME_RATE + 0.1
 
 
+def test_a_film_of_a_babbled_behavior(store: Store) -> None:
+    """Any behavior can be seen again, those of learning too."""
+    info = learn(store, spec_of("l-stick", behaviors=40), now).info
+    with pytest.raises(UsageError, match="no behavior 41 in run 1; it has 1 to 40"):
+        store.behavior_scene(info.id, 41)
+    with pytest.raises(UsageError, match="no learning run 2; they are numbered 1 to 1"):
+        store.behavior_scene(2, 1)
+    for step in (store.behavior_scene(info.id, number) for number in range(1, 41)):
+        film = scenes_of_step(step, settings_from_json(step.settings))
+        assert film[-1].attractor.point == pytest.approx(step.attractor_end, abs=0.02)
+        assert film[-1].goal is None
+    last = store.behavior_scene(info.id, 40)
+    assert "Run 1, behavior 40 of 40, after" in view_of_step(last, after=True).title
+
+
 def largest_leap(film: list[Scene]) -> float:
     """Return how far the wrist moves between two frames at the most (in)."""
     places = np.array([scene.wrist for scene in film])
@@ -54,7 +69,7 @@ def largest_leap(film: list[Scene]) -> float:
 def test_before_and_after_a_step_the_puck_is_where_it_was(steps: list[StepScene]) -> None:
     step = steps[0]
     for after, truth in ((False, step.attractor_start), (True, step.attractor_end)):
-        view = view_of_step(step, 1, after=after)
+        view = view_of_step(step, after=after)
         assert f"step 1 of {len(steps)}, {'after' if after else 'before'} {step.call}" in view.title
         (blob,) = view.seen.blobs[0]
         pixel = Settings().camera.camera().project(np.array([[*truth, 0.5]]))[0]
@@ -70,7 +85,7 @@ def test_a_view_is_the_same_every_time() -> None:
 
 @pytest.mark.usefixtures("steps")
 def test_steps_and_trials_that_are_not_there(store: Store) -> None:
-    with pytest.raises(UsageError, match="no trial 9; trials are 1 to 1"):
+    with pytest.raises(UsageError, match="no trial 9; they are numbered 1 to 1"):
         store.step_scene(9, 1)
     with pytest.raises(UsageError, match="no step 99 in trial 1; it has steps 1 to"):
         store.step_scene(1, 99)
