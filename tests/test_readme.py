@@ -11,6 +11,7 @@ from tests.cli.program import done, rows
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text()
 QUERIES = re.findall(r"^```sql\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
+GROUPS = {"camera", "db"}
 QUOTED = re.compile(r"`([^`]+)`")
 
 
@@ -65,7 +66,7 @@ def commands() -> list[tuple[str, ...]]:
             assert program == "affcli"
             names = [word for word in words if re.fullmatch(r"[a-z-]+", word)]
             options = re.findall(r"--[a-z-]+", f"{quoted} {what}")
-            subcommand = names[:2] if names[0] == "db" else names[:1]
+            subcommand = names[:2] if names[0] in GROUPS else names[:1]
             found.append((" ".join(subcommand), *dict.fromkeys(options)))
     return found
 
@@ -80,10 +81,10 @@ def test_every_command_and_option_exists(command: str, options: list[str]) -> No
 
 def test_every_command_is_in_the_table() -> None:
     shown = {command for command, *_ in commands()}
-    for group in ((), ("db",)):
+    for group in ((), *((name,) for name in GROUPS)):
         listed = help_of(*group).split("Commands:\n")[1]
         names = {" ".join((*group, line.split()[0])) for line in listed.splitlines()}
-        assert names - {"db"} <= shown
+        assert names - GROUPS <= shown
 
 
 @pytest.mark.parametrize("option", ["--json", "--db", "--config"])

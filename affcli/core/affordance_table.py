@@ -14,7 +14,7 @@ Rows = NDArray[np.intp]
 
 COLOR_TOLERANCE = 45.0
 """Two colours are consistent when they differ by at most this much in RGB (Euclidean, 0 to 255).
-Choice: more than the light makes of one thing's colour wherever it lies on the table (31, through
+Choice: more than the light makes of one thing's colour wherever it lies on the table (32, through
 the camera), less than half the distance between the two most similar tools (57)."""
 
 

@@ -3,6 +3,7 @@
 The paper's pattern: 6 by 6 markers of one colour, 5 in apart, on a cardboard.
 """
 
+import colorsys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -14,14 +15,25 @@ from affcli.core.geometry import Point
 from affcli.core.tool import Color
 from affcli.errors import BadInputError
 from affcli.perception.camera import Array
-from affcli.perception.palette import LEAST_SATURATION, LEAST_VALUE, ColorClass, Role, palette
+from affcli.perception.palette import (
+    CLOSEST_HUES,
+    LEAST_SATURATION,
+    LEAST_VALUE,
+    ColorClass,
+    Role,
+    hue_distance,
+    palette,
+)
 from affcli.perception.rendering import Picture
 from affcli.perception.segmentation import Blob, Segmenter, blobs_of
 
 SMALLEST_MARKER = 8
 """Pixels; a smaller blob is noise."""
-LIKE_SIZE = 8.0
-"""Markers differ by at most this factor in area from their median: perspective makes five."""
+LEAP = 3.0
+"""Sorted by size, a marker has at most this many times the area of the next: perspective makes the
+nearest of them six times as large as the farthest, but in small steps."""
+RARE = 0.001
+"""A hue that holds less than this share of the pixels of the most frequent one is noise."""
 HUES = 6
 """How many of the most frequent hues are tried when the colour of the markers is not given."""
 OFF_GRID = 0.35
@@ -75,8 +87,7 @@ def find_markers(picture: Picture, pattern: Pattern, color: Color | None = None)
         BadInputError: too few markers or too many, one cut off by the edge, or no grid.
     """
     wanted = pattern.rows * pattern.columns
-    hues = _frequent_hues(picture) if color is None else [_hue(color)]
-    groups = [_like_sized(_blobs(picture, hue)) for hue in hues]
+    groups = [_like_sized(blobs, wanted) for blobs in _blobs_by_hue(picture, color)]
     blobs = min(groups, key=lambda group: (abs(len(group) - wanted), -len(group)), default=[])
     if len(blobs) < 3:
         white = float((picture.min(axis=2) >= 250).mean())
@@ -142,7 +153,9 @@ def _frequent_hues(picture: Picture) -> list[float]:
     peaks: list[int] = []
     for hue in np.argsort(-smooth, kind="stable").tolist():
         distances = [abs((hue - peak + 128) % 256 - 128) for peak in peaks]
-        if smooth[hue] > 0.0 and min(distances, default=256) > 17 and len(peaks) < HUES:
+        if smooth[hue] < RARE * smooth.max() or len(peaks) == HUES:
+            break
+        if min(distances, default=256) > 17:
             peaks.append(hue)
     return [360.0 * hue / 256.0 for hue in peaks]
 
@@ -153,23 +166,36 @@ def _hue(color: Color) -> float:
     return checked.hue
 
 
-def _blobs(picture: Picture, hue: float) -> list[Blob]:
-    """Return the blobs of one hue."""
-    red, green, blue = cv2.cvtColor(
-        np.array([[[round(hue * 256.0 / 360.0) % 256, 255, 255]]], np.uint8), cv2.COLOR_HSV2RGB_FULL
-    )[0, 0].tolist()
-    one = ColorClass("marker", Color((red, green, blue)), Role.OBJECT)
-    labels = Segmenter([one]).segment(picture).labels
+def _blobs_by_hue(picture: Picture, color: Color | None) -> list[tuple[Blob, ...]]:
+    """Return the blobs of each frequent hue; of the hue of `color` alone when it is given.
+
+    The other hues take the pixels that are nearer to them: a wooden table is no red marker.
+    """
+    hues = _frequent_hues(picture)
+    if color is not None:
+        own = _hue(color)
+        hues = [own, *(hue for hue in hues if hue_distance(hue, own) >= CLOSEST_HUES)]
+    classes = [ColorClass("", _pure(hue), Role.OBJECT) for hue in hues]
+    labels = Segmenter(classes).segment(picture).labels
     height, width = labels.shape
-    return list(blobs_of(labels, 0, (0, 0, width, height), SMALLEST_MARKER))
+    looked_for = range(len(hues) if color is None else 1)
+    return [blobs_of(labels, k, (0, 0, width, height), SMALLEST_MARKER) for k in looked_for]
 
 
-def _like_sized(blobs: Sequence[Blob]) -> list[Blob]:
-    """Return the blobs whose area is like that of most."""
-    if not blobs:
-        return []
-    median = float(np.median([blob.area for blob in blobs]))
-    return [b for b in blobs if median / LIKE_SIZE <= b.area <= median * LIKE_SIZE]
+def _pure(hue: float) -> Color:
+    """Return the most saturated colour of a hue."""
+    return Color(255.0 * c for c in colorsys.hsv_to_rgb(hue / 360.0, 1.0, 1.0))
+
+
+def _like_sized(blobs: Sequence[Blob], wanted: int) -> list[Blob]:
+    """Return those blobs, largest first, that form a group by size, of nearly `wanted` blobs."""
+    groups: list[list[Blob]] = []
+    for blob in blobs:
+        if groups and groups[-1][-1].area <= LEAP * blob.area:
+            groups[-1].append(blob)
+        else:
+            groups.append([blob])
+    return min(groups, key=lambda group: abs(len(group) - wanted), default=[])
 
 
 def _at_edge(blob: Blob, width: int, height: int) -> bool:

@@ -18,6 +18,8 @@ WHITE = (245, 245, 245)
 GAP_PX = 8
 BAND_PX = 30
 """Height of the band under the two pictures in which they are named."""
+LONG_ARM, SHORT_ARM, LARGE_BLOB = 6, 3, 200
+"""Pixels of the arms of a cross, the long ones on blobs of more pixels than that."""
 CODECS = {".mp4": "mp4v", ".avi": "MJPG"}
 
 
@@ -56,7 +58,7 @@ def segmentation_picture(seen: Segmentation) -> Picture:
         else:
             # A goal that something lies across is seen in several pieces.
             for blob in blobs:
-                _cross(picture, blob.x, blob.y)
+                _cross(picture, blob.x, blob.y, LONG_ARM if blob.area > LARGE_BLOB else SHORT_ARM)
         _write(picture, one_line(one.name, 30), place, 0.42, WHITE, outline=(0, 0, 0))
     return picture
 
@@ -91,10 +93,10 @@ def save_video(path: Path, pictures: Sequence[Picture], rate: float) -> None:
         writer.release()
 
 
-def _cross(picture: Picture, x: float, y: float) -> None:
+def _cross(picture: Picture, x: float, y: float, arm_px: int) -> None:
     """Draw a cross at a centroid, to a sixteenth of a pixel."""
     shift = 4
-    cx, cy, arm = round(x * 16), round(y * 16), 6 * 16
+    cx, cy, arm = round(x * 16), round(y * 16), arm_px * 16
     for color, thickness in (((0, 0, 0), 3), (WHITE, 1)):
         for dx, dy in ((arm, 0), (0, arm)):
             ends = (cx - dx, cy - dy), (cx + dx, cy + dy)

@@ -134,10 +134,10 @@ def _scene(
     title: str,
     key: tuple[int, ...],
     about: tuple[Any, ...],
-    row: sa.Row[Any],
-    before: sa.Row[Any] | None,
+    row: Any,
+    before: Any,
 ) -> StepScene:
-    """Return the scene of a row."""
+    """Return the scene of a row; `before` is the one before it, or None."""
     settings, tool, shape, goal, seed, robot = about
     places = [Point(row[i], row[i + 1]) for i in (1, 3, 5, 7)]
     with reading_what_was_written(title):

@@ -16,7 +16,8 @@ from affcli.perception.camera_settings import CameraSettings
 from affcli.perception.markers import Pattern, find_markers, ordered
 from affcli.perception.palette import MARKER_COLOR
 from affcli.perception.rendering import Picture, Renderer
-from tests.perception.views import PATTERN, SENSOR, cameras, flat
+from affcli.perception.solids import circle
+from tests.perception.views import PATTERN, SENSOR, camera_at, cameras, flat
 
 CAMERA = CameraSettings()
 TABLE_PATTERN = table_pattern(CAMERA, Workspace())
@@ -125,3 +126,23 @@ def test_a_marker_is_small() -> None:
     """§4: "small color markers ... 5 inches apart"."""
     assert 0.1 * TABLE_PATTERN.spacing >= MARKER_RADIUS
     assert (TABLE_PATTERN.columns, TABLE_PATTERN.rows, TABLE_PATTERN.spacing) == (6, 6, 5.0)
+
+
+@pytest.mark.parametrize("color", [None, Color((220.0, 40.0, 40.0))])
+def test_markers_on_a_brown_table_in_a_compressed_photograph(color: Color | None) -> None:
+    """The table is saturated too, its hue 30 degrees from theirs, and JPEG blurs the colours."""
+    camera = camera_at(55.0, 25.0, 40.0)
+    y, x = np.mgrid[0:480, 0:640]
+    wood = np.array([60.0, 90.0, 120.0]) * (1.15 - 0.4 * ((x / 640 - 0.3) ** 2))[:, :, None]
+    photograph = (wood * (1.0 + 0.08 * np.sin(x / 37.0))[:, :, None]).astype(np.uint8)
+    for place in PATTERN.places:
+        disc = flat(camera, circle(Point(*place), 0.5))
+        corners = np.rint(disc * 64.0).astype(np.int32)
+        cv2.fillPoly(photograph, [corners], (40, 40, 220), cv2.LINE_AA, 6)
+    noise = np.random.default_rng(0).normal(0.0, 3.0, photograph.shape)
+    noisy = np.clip(cv2.GaussianBlur(photograph, (0, 0), 0.7) + noise, 0, 255).astype(np.uint8)
+    _, data = cv2.imencode(".jpg", noisy, [cv2.IMWRITE_JPEG_QUALITY, 75])
+    found = find_markers(np.asarray(cv2.imdecode(data, cv2.IMREAD_COLOR), np.uint8), PATTERN, color)
+    truth = flat(camera, PATTERN.places)
+    nearest = np.linalg.norm(found[:, None] - truth[None], axis=2).min(axis=1)
+    assert nearest.max() < 0.8
