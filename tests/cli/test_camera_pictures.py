@@ -95,7 +95,7 @@ def plain(value: int, width: int = 640, height: int = 480) -> bytes:
 
 def brighter(picture: Picture, by: int) -> Picture:
     """Return a picture that was exposed longer."""
-    return np.clip(picture.astype(int) + by, 0, 255).astype(np.uint8)
+    return np.asarray(np.clip(picture.astype(int) + by, 0, 255), np.uint8)
 
 
 def claiming(width: int, height: int) -> bytes:

@@ -132,7 +132,7 @@ def test_a_marker_is_small() -> None:
 def test_markers_on_a_brown_table_in_a_compressed_photograph(color: Color | None) -> None:
     """The table is saturated too, its hue 30 degrees from theirs, and JPEG blurs the colours."""
     camera = camera_at(55.0, 25.0, 40.0)
-    y, x = np.mgrid[0:480, 0:640]
+    x = np.mgrid[0:480, 0:640][1]
     wood = np.array([60.0, 90.0, 120.0]) * (1.15 - 0.4 * ((x / 640 - 0.3) ** 2))[:, :, None]
     photograph = (wood * (1.0 + 0.08 * np.sin(x / 37.0))[:, :, None]).astype(np.uint8)
     for place in PATTERN.places:

@@ -1,0 +1,500 @@
+"""``affcli camera``: calibrate from a picture, then locate; what is asked wrongly or missing."""
+
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import cv2
+import pytest
+from rich.cells import cell_len
+
+from tests.cli.program import (
+    PATIENCE,
+    Arg,
+    Ended,
+    affcli,
+    done,
+    environment,
+    names_in,
+    one_printable_line,
+    refused,
+    rows,
+)
+from tests.cli.pseudo_terminal import COLOR, ESCAPE, on_terminal
+from tests.cli.test_read_only import as_nobody
+
+AS_IT_LIES = ("--turn", "180", "--origin", "-12.5,9.2")
+"""How the pattern of the simulated table lies."""
+ON_TABLE = {"puck": (-3.0, 22.4), "goal": (12.4, 22.4), "wrist": (0.0, 14.9)}
+"""What lies where as a trial with the T-hook begins (in)."""
+MARKER = {"x_px", "y_px", "x_in", "y_in", "residual_x_px", "residual_y_px"}
+INSTALL = (
+    "affcli: the camera needs OpenCV, Pillow and SciPy; install them: pip install 'affcli[camera]'"
+)
+
+
+@pytest.fixture(scope="module")
+def shared(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with pictures of pattern and table, and the calibration; not to be changed."""
+    folder = tmp_path_factory.mktemp("camera")
+    done("camera", "view", "--pattern", "--frame", "--out", "pattern.png", cwd=folder)
+    done("camera", "view", "--frame", "--out", "table.png", cwd=folder)
+    done("camera", "calibrate", "pattern.png", *AS_IT_LIES, "--out", "cal.json", cwd=folder)
+    return folder
+
+
+@pytest.fixture
+def folder(shared: Path, tmp_path: Path) -> Path:
+    """A folder of this test alone with pattern.png, table.png and cal.json."""
+    for path in shared.iterdir():
+        (tmp_path / path.name).symlink_to(path)
+    return tmp_path
+
+
+def calibrated(*args: Arg, cwd: Path) -> dict[str, Any]:
+    """Return what ``calibrate`` gives."""
+    value: dict[str, Any] = done("camera", "calibrate", *args, "--json", cwd=cwd).json
+    return value
+
+
+def located(*args: Arg, cwd: Path) -> dict[str, dict[str, Any]]:
+    """Return what ``locate`` gives for the table, by name."""
+    ended = done("camera", "locate", "table.png", *args, "--json", cwd=cwd)
+    assert ended.err == ""
+    return {seen["name"]: seen for seen in ended.json}
+
+
+def place(seen: dict[str, Any]) -> tuple[float, float]:
+    """Return the only place where something is seen."""
+    (only,) = seen["places"]
+    return only["x_in"], only["y_in"]
+
+
+def test_what_a_picture_of_the_pattern_gives_finds_what_is_on_the_table(tmp_path: Path) -> None:
+    ended = done("camera", "view", "--pattern", "--frame", "--out", "p.png", cwd=tmp_path)
+    assert ended.out == ""
+    assert ended.err == "The calibration pattern, first marker at (-12.5, 9.2) in: p.png\n"
+    calibrate = ("camera", "calibrate", "p.png", *AS_IT_LIES, "--out", "cal.json", "--json")
+    ended = done(*calibrate, cwd=tmp_path)
+    assert ended.err == "the calibration is in cal.json\n"
+    assert json.loads((tmp_path / "cal.json").read_text()) == ended.json
+    done("camera", "view", "--frame", "--out", "table.png", cwd=tmp_path)
+    seen = located("--calibration", "cal.json", cwd=tmp_path)
+    for name, truth in ON_TABLE.items():
+        assert math.dist(place(seen[name]), truth) < 0.05
+    conditions = {name: one["condition"] for name, one in seen.items()}
+    once = {**dict.fromkeys(ON_TABLE, "once"), "t-hook": "once"}
+    assert conditions == {**dict.fromkeys(("stick", "l-stick", "l-hook", "t-stick"), "no"), **once}
+    assert [name for name, one in seen.items() if not one["places"]] == [
+        name for name, condition in conditions.items() if condition == "no"
+    ]
+    assert names_in(tmp_path) == ["cal.json", "p.png", "table.png"]
+
+
+def test_the_seed_decides_the_noise_in_a_picture(folder: Path) -> None:
+    for name, args in {"pattern.png": ("--pattern",), "table.png": ()}.items():
+        for seed in ("0", "1"):
+            view = ("camera", "view", *args, "--frame", "--seed", seed)
+            done(*view, "--out", f"{seed}.png", "--force", cwd=folder)
+        assert (folder / "0.png").read_bytes() == (folder / name).read_bytes()
+        assert (folder / "1.png").read_bytes() != (folder / name).read_bytes()
+
+
+def test_beside_the_frame_is_what_the_robot_makes_of_it(folder: Path) -> None:
+    done("camera", "view", "--out", "both.png", cwd=folder)
+    both, frame = (cv2.imread(str(folder / name)) for name in ("both.png", "table.png"))
+    assert both is not None
+    assert frame is not None
+    assert frame.shape == (480, 640, 3)
+    assert both.shape[1] > 1280
+    assert (both[:480, :640] == frame).all()
+    assert (both[:480, -640:] != frame).any()
+
+
+def test_the_color_of_the_markers_may_be_named(folder: Path) -> None:
+    found = calibrated("pattern.png", *AS_IT_LIES, cwd=folder)
+    for color in ("200,40,40", "#c82828", "#C82828"):
+        args = ("pattern.png", *AS_IT_LIES, "--marker-color", color)
+        assert calibrated(*args, cwd=folder) == found
+    line = refused(4, "camera", "calibrate", "pattern.png", "--marker-color", "0,0,255", cwd=folder)
+    assert "pattern.png: no markers found" in line
+
+
+@pytest.mark.parametrize("turn", [0, 90, 180, 270])
+def test_turn_says_how_the_pattern_lies(turn: int, folder: Path) -> None:
+    """With 0 x runs to the right in the picture and y up; each 90 turns both to the left."""
+    found = calibrated("pattern.png", "--turn", str(turn), "--origin", "3,-4", cwd=folder)
+    first, along_x, along_y = (found["markers"][k] for k in (0, 5, 30))
+    assert [(m["x_in"], m["y_in"]) for m in (first, along_x, along_y)] == [
+        (3.0, -4.0),
+        (28.0, -4.0),
+        (3.0, 21.0),
+    ]
+    for marker, angle in ((along_x, turn), (along_y, turn + 90)):
+        right, down = marker["x_px"] - first["x_px"], marker["y_px"] - first["y_px"]
+        direction = math.cos(math.radians(angle)), -math.sin(math.radians(angle))
+        assert right * direction[0] + down * direction[1] > 0.9 * math.hypot(right, down)
+
+
+def test_spacing_and_sensor_width_are_the_units(folder: Path) -> None:
+    """Half the spacing puts the camera at half the distance, twice the width doubles f."""
+    found = calibrated("pattern.png", cwd=folder)
+    nearer = calibrated("pattern.png", "--spacing", "2.5", cwd=folder)
+    assert nearer["translation_in"] == pytest.approx([0.5 * t for t in found["translation_in"]])
+    assert nearer["focal_length_mm"] == pytest.approx(found["focal_length_mm"])
+    wider = calibrated("pattern.png", "--sensor-width", "9.6", cwd=folder)
+    assert wider["focal_length_mm"] == pytest.approx(2.0 * found["focal_length_mm"], rel=1e-4)
+
+
+def test_without_an_image_the_simulated_camera_is_calibrated(tmp_path: Path) -> None:
+    found = calibrated(cwd=tmp_path)
+    assert found["focal_length_mm"] == pytest.approx(5.29, abs=0.03)
+    assert 0.0 < found["rms_px"] < 0.2
+    assert len(found["markers"]) == 36
+    residuals = []
+    for marker in found["markers"]:
+        assert marker.keys() == MARKER
+        residuals += [marker["residual_x_px"], marker["residual_y_px"]]
+    assert found["rms_px"] == pytest.approx(math.sqrt(sum(r * r for r in residuals) / 72))
+    assert calibrated("--seed", "0", cwd=tmp_path) == found
+    assert calibrated("--seed", "1", cwd=tmp_path)["markers"] != found["markers"]
+    assert names_in(tmp_path) == []
+
+
+def test_settings_move_the_simulated_camera(tmp_path: Path) -> None:
+    config = tmp_path / "my.toml"
+    config.write_text("[camera]\nfocal_length_mm = 5.0\n")
+    found = calibrated("--config", "my.toml", cwd=tmp_path)
+    assert found["focal_length_mm"] == pytest.approx(5.0, abs=0.03)
+    config.write_text("[camera]\ntilt_degrees = 75.0\n")
+    for command in (("calibrate",), ("view", "--out", "v.png")):
+        line = refused(4, "camera", *command, "--config", "my.toml", cwd=tmp_path)
+        assert line.endswith("; see the section camera of the settings")
+    assert names_in(tmp_path) == ["my.toml"]
+
+
+SHOWING = {
+    "the simulated camera": ("calibrate",),
+    "a picture": ("calibrate", "pattern.png", *AS_IT_LIES),
+    "places": ("locate", "table.png", "--calibration", "cal.json"),
+}
+
+
+@pytest.mark.parametrize("columns", [80, 40])
+@pytest.mark.parametrize("args", SHOWING.values(), ids=SHOWING.keys())
+def test_nothing_is_wider_than_the_screen_or_cut_off(
+    args: tuple[str, ...], columns: int, folder: Path
+) -> None:
+    ended = done("camera", *args, cwd=folder, COLUMNS=str(columns), TERM="xterm-256color")
+    assert ended.err == ""
+    assert max(map(cell_len, ended.out.splitlines())) <= columns
+    assert "…" not in ended.out
+    assert all(line.isprintable() for line in ended.out.splitlines())
+    if args[0] == "calibrate":
+        assert "focal length" in ended.out
+        # 36 markers, and the error of all of them.
+        assert ended.out.count("0.0") + ended.out.count("0.1") >= 37
+    else:
+        words = ended.out.split()
+        assert words.count("once") == 4
+        assert words.count("no") == 4
+        assert {"puck", "22.40", "wrist", "14.91", "goal", "t-hook"} <= set(words)
+
+
+def test_colors_on_the_terminal_are_for_those_who_want_them(folder: Path) -> None:
+    args = ("camera", "locate", folder / "table.png", "--calibration", folder / "cal.json")
+    code, shown = on_terminal(*args, NO_COLOR="1")
+    assert code == 0
+    assert not COLOR.search(shown)
+    code, shown = on_terminal(*args, TERM="dumb")
+    assert code == 0
+    assert not ESCAPE.search(shown)
+    assert shown == done(*args).out
+
+
+BAD_OPTIONS: dict[str, tuple[tuple[str, ...], str]] = {
+    "one number of markers": (("--markers", "6"), "--markers 6: must be columns x rows"),
+    "no columns": (("--markers", "0x6"), "--markers 0x6: must be columns x rows, each 3 to 40"),
+    "too few markers": (("--markers", "2x2"), "--markers 2x2: must be columns x rows, each 3"),
+    "too many markers": (("--markers", "99x99"), "--markers 99x99: must be columns x rows"),
+    "markers of 10 kB": (("--markers", "9" * 10_000), "--markers 999"),
+    "other markers": (("--markers", "6x5"), "pattern.png: 36 markers found instead of 30"),
+    "no spacing": (("--spacing", "0"), "--spacing 0.0: must be more than 0"),
+    "spacing no number": (("--spacing", "nan"), "--spacing nan: must "),
+    "negative spacing": (("--spacing", "-1"), "--spacing -1.0: must be more than 0"),
+    "infinite spacing": (("--spacing", "inf"), "--spacing inf: must "),
+    "turned between": (("--turn", "45"), "--turn 45: must be one of 0, 90, 180, 270"),
+    "one coordinate": (("--origin", "1"), "--origin 1: must be 2 numbers with commas between"),
+    "three coordinates": (("--origin", "1,2,3"), "--origin 1,2,3: must be 2 numbers"),
+    "coordinate no number": (("--origin", "nan,0"), "--origin nan,0: must be 2 "),
+    "coordinates in words": (("--origin", "here,\x1b[31m"), "--origin here,\\x1b[31m: must be 2"),
+    "no colour": (("--marker-color", "nonsense"), "--marker-color nonsense: must be 3 numbers"),
+    "short colour": (("--marker-color", "#c22"), "--marker-color #c22: must be 3 numbers"),
+    "colour too bright": (("--marker-color", "300,0,0"), "300,0,0: each must lie in 0 to 255"),
+    "grey colour": (("--marker-color", "128,128,128"), "too grey or too dark"),
+    "dark colour": (("--marker-color", "#100000"), "too grey or too dark"),
+    "no sensor": (("--sensor-width", "0"), "--sensor-width 0.0: must be more than 0"),
+    "seed": (("--seed", "-1"), "--seed -1: must lie in 0 to 2^63 - 1"),
+    "missing settings": (("--config", "none.toml"), "none.toml"),
+    "into no folder": (("--out", "none/cal.json"), "none/cal.json: its folder does not exist"),
+    "over a folder": (("--out", ".", "--force"), ".: not a file; name another"),
+    "below a file": (("--out", "cal.json/x"), "cal.json/x: its folder does not exist"),
+    "over a file": (("--out", "cal.json"), "cal.json: exists already; name another file, or give"),
+}
+ONLY_SIMULATED = {"missing settings"}
+"""What does not matter where there is a picture."""
+
+
+@pytest.mark.parametrize("name", BAD_OPTIONS)
+def test_a_bad_option_of_calibrate_is_named(name: str, folder: Path) -> None:
+    args, says = BAD_OPTIONS[name]
+    image = () if name in ONLY_SIMULATED else ("pattern.png",)
+    before = (folder / "cal.json").read_bytes()
+    assert says in refused(4, "camera", "calibrate", *image, *args, cwd=folder)
+    assert (folder / "cal.json").read_bytes() == before
+    assert names_in(folder) == ["cal.json", "pattern.png", "table.png"]
+
+
+def test_what_is_no_number_is_a_usage_error(folder: Path) -> None:
+    for option in ("--spacing", "--turn", "--sensor-width", "--seed"):
+        line = refused(2, "camera", "calibrate", "pattern.png", option, "much", cwd=folder)
+        assert f"'{option}'" in line
+    assert "'IMAGE'" in refused(2, "camera", "locate", cwd=folder)
+    assert "'--calibration'" in refused(2, "camera", "locate", "table.png", cwd=folder)
+
+
+def test_without_a_command_it_says_which_there_are(tmp_path: Path) -> None:
+    ended = affcli("camera", cwd=tmp_path)
+    assert (ended.code, ended.out) == (2, "")
+    for command in ("calibrate", "locate", "view"):
+        assert f"\n  {command} " in ended.err
+
+
+def test_a_file_is_written_over_only_by_force(folder: Path) -> None:
+    mine = folder / "mine.json"
+    mine.write_text("precious")
+    line = refused(4, "camera", "calibrate", "--out", "mine.json", cwd=folder)
+    assert line.endswith("mine.json: exists already; name another file, or give --force")
+    assert mine.read_text() == "precious"
+    done("camera", "calibrate", "--out", "mine.json", "--force", cwd=folder)
+    assert len(json.loads(mine.read_text())["markers"]) == 36
+
+
+@pytest.fixture
+def public(shared: Path) -> Iterator[Path]:
+    """A folder that everybody may enter and nobody write to, with one file that may be read."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for path in shared.iterdir():
+            (folder / path.name).write_bytes(path.read_bytes())
+            (folder / path.name).chmod(0o000)
+        (folder / "table.png").chmod(0o444)
+        folder.chmod(0o555)
+        yield folder
+        folder.chmod(0o755)
+
+
+def test_where_one_may_not_write_or_read_is_named(public: Path) -> None:
+    before = names_in(public)
+    picture, table, calibration = (public / n for n in ("pattern.png", "table.png", "cal.json"))
+    writing = [("calibrate", "--out", str(public / "new.json"))]
+    writing += [("view", "--out", str(public / "new.png"))]
+    reading = [("calibrate", str(picture)), ("locate", str(table), "--calibration")]
+    reading[1] += (str(calibration),)
+    results = as_nobody(*(("camera", *args) for args in (*writing, *reading[: _secrets()])))
+    for ended in results:
+        assert (ended.code, ended.out) == (4, "")
+        assert ": Permission denied; " in one_printable_line(ended.err).replace(
+            "cannot be written: ", ""
+        )
+    assert names_in(public) == before
+
+
+def _secrets() -> int:
+    """Return how many of the files may be tested: only root can make a file that is another's."""
+    return 2 if os.getuid() == 0 else 0
+
+
+BAD_CALIBRATIONS: dict[str, tuple[bytes | dict[str, Any], str]] = {
+    "not JSON": (b"focal length 5.3 mm", "not a calibration (Expecting value"),
+    "empty": (b"", "not a calibration (Expecting value"),
+    "not text": (b"\xff\xfe\x00\xd8", "not a calibration ("),
+    "a list": (b"[1, 2]", "not a calibration (no JSON object)"),
+    "of another kind": (b'{"run": 1, "tool": "stick"}', "not a calibration ('width_px')"),
+    "deeply nested": (b'{"a":' * 100_000, "not a calibration (nested too deeply)"),
+    "deeply nested list": (b"[" * 100_000, "not a calibration (nested too deeply)"),
+    "2 MB": (b" " * 2_000_000, "not a calibration (more than 1000000 bytes)"),
+    "without end": (b"", "/dev/zero: not a calibration (more than 1000000 bytes)"),
+    "NaN": ({"focal_length_mm": math.nan}, "all numbers must be finite"),
+    "infinite": ({"distortion_per_mm2": math.inf}, "all numbers must be finite"),
+    "an infinite place": ({"translation_in": [0, math.inf, 0]}, "all numbers must be finite"),
+    "no focal length": ({"focal_length_mm": 0.0}, "width and focal length above 0"),
+    "text": ({"focal_length_mm": "long"}, "could not convert string to float: 'long'"),
+    "nothing": ({"sensor_width_mm": None}, "not a calibration (float() argument must"),
+    "half a pixel": ({"width_px": 640.5}, "width_px and height_px must be whole numbers above 0"),
+    "no pixels": ({"height_px": 0}, "width_px and height_px must be whole numbers above 0"),
+    "absurdly wide": ({"width_px": 10**1000}, "640x480 pixels, but the camera was calibrated at"),
+    "two axes": ({"rotation": [[1, 0, 0], [0, 1, 0]]}, "rotation must be 3 by 3"),
+    "uneven axes": ({"rotation": [[1, 0, 0], [0, 1], [0]]}, "not a calibration (setting an array"),
+    "stretched": ({"rotation": [[2, 0, 0], [0, 1, 0], [0, 0, 1]]}, "at right angles and of length"),
+    "skew": ({"rotation": [[1, 0, 0], [0.1, 1, 0], [0, 0, 1]]}, "must be at right angles"),
+}
+
+
+@pytest.mark.parametrize(
+    ("content", "says"), BAD_CALIBRATIONS.values(), ids=BAD_CALIBRATIONS.keys()
+)
+def test_what_is_no_calibration_is_named(
+    content: bytes | dict[str, Any], says: str, folder: Path
+) -> None:
+    path = Path("/dev/zero") if "/dev/zero" in says else folder / "my.json"
+    if isinstance(content, dict):
+        known = json.loads((folder / "cal.json").read_text())
+        content = json.dumps({**known, **content}).encode()
+    (folder / "my.json").write_bytes(content)
+    line = refused(4, "camera", "locate", "table.png", "--calibration", path, cwd=folder)
+    assert says in line
+
+
+def test_a_calibration_that_cannot_be_read_is_named(folder: Path) -> None:
+    for path, says in {"none.json": "No such file", ".": "Is a dir", "x" * 999: "too long"}.items():
+        line = refused(4, "camera", "locate", "table.png", "--calibration", path, cwd=folder)
+        assert says in line
+        assert line.endswith("; give a file that `affcli camera calibrate` wrote")
+
+
+def test_a_line_of_sight_that_misses_the_table_has_no_place(folder: Path) -> None:
+    """A camera that looks at the horizon sees half of what it sees above it."""
+    known = json.loads((folder / "cal.json").read_text())
+    known["rotation"] = [[1, 0, 0], [0, 0, -1], [0, 1, 0]]
+    (folder / "my.json").write_text(json.dumps(known))
+    places = [one["places"] for one in located("--calibration", "my.json", cwd=folder).values()]
+    assert any(seen[0]["x_in"] is None for seen in places if seen)
+
+
+def test_own_colors_are_found_by_name(folder: Path) -> None:
+    """Their height takes them to their place: the puck's middle is 0.5 in over the table."""
+    (folder / "my.toml").write_text(
+        '[ball]\nrgb = [240, 120, 20]\nheight = 0.5\n\n["my [/] hand"]\nrgb = [225.0, 50.0, 150]\n'
+        "\n[moon]\nrgb = [240, 240, 20]\n"
+    )
+    args = ("--calibration", "cal.json", "--colors", "my.toml")
+    seen = located(*args, cwd=folder)
+    assert list(seen) == ["ball", "my [/] hand", "moon"]
+    assert [one["condition"] for one in seen.values()] == ["once", "once", "no"]
+    assert math.dist(place(seen["ball"]), ON_TABLE["puck"]) < 0.05
+    assert math.dist(place(seen["my [/] hand"]), ON_TABLE["wrist"]) > 0.2
+    shown = done("camera", "locate", "table.png", *args, cwd=folder).out
+    assert "my [/] hand  once " in shown
+
+
+BAD_COLORS = {
+    "not TOML": (b"my ball is orange", "colors my.toml: not TOML"),
+    "not text": (b"\xff\xfe\x00", "colors my.toml: not TOML"),
+    "deeply nested": (b"a = " + b"[" * 100_000, "colors my.toml: not TOML"),
+    "2 MB": (b"# a long remark\n" * 125_000, "colors my.toml: more than 1000000 bytes"),
+    "empty": (b"", "none of the colours is seen"),
+    "unknown key": (b"[a]\nrgb = [240, 120, 20]\nhue = 30", "[a] must hold rgb = [red, green, b"),
+    "no colour": (b"[a]\nheight = 1.0", "[a] must hold rgb = [red, green, blue], and height"),
+    "no section": (b"rgb = [240, 120, 20]", "[rgb] must hold rgb = [red, green, blue]"),
+    "too bright": (b"[a]\nrgb = [256, 0, 0]", "a.rgb = [256, 0, 0] must lie in [0, 255]"),
+    "negative": (b"[a]\nrgb = [-1, 0, 0]", "a.rgb = [-1, 0, 0] must lie in [0, 255]"),
+    "NaN": (b"[a]\nrgb = [nan, 0, 255]", "a.rgb = [nan, 0, 255] must lie in [0, 255]"),
+    "two numbers": (b"[a]\nrgb = [1, 2]", "a.rgb = [1, 2] must be three numbers"),
+    "a word": (b'[a]\nrgb = "red"', "a.rgb = red must be three numbers"),
+    "a truth": (b"[a]\nrgb = [true, 0, 0]", "a.rgb = [True, 0, 0] must be three numbers"),
+    "6,000 digits": (b"[a]\nrgb = [0x" + b"f" * 6000 + b", 0, 0]", "a.rgb = (list too large"),
+    "below": (b"[a]\nrgb = [255, 0, 0]\nheight = -1", "a.height = -1 must be 0 or more"),
+    "height NaN": (b"[a]\nrgb = [255, 0, 0]\nheight = nan", "a.height = nan must be"),
+    "height in words": (b'[a]\nrgb = [255, 0, 0]\nheight = "1"', "a.height = 1 must be a number"),
+    "alike": (
+        b"[a]\nrgb = [240, 120, 20]\n[b]\nrgb = [120, 58, 10]",
+        "b (120, 58, 10) and a differ by less than 12 degrees of hue; paint one of them",
+    ),
+    "grey": (b"[a]\nrgb = [128, 130, 128]", "a (128, 130, 128) is too grey or too dark"),
+    "dark": (b"[a]\nrgb = [40, 0, 0]", "a (40, 0, 0) is too grey or too dark"),
+    "not seen": (b"[moon]\nrgb = [240, 240, 20]", "none of the colours is seen (moon); name yours"),
+    "escape sequence": (b'["\\u001b[31mred"]\nrgb = [0, 0, 0]', "\\x1b[31mred (0, 0, 0) is too"),
+    "10 kB name": (b"[" + b"x" * 10_000 + b"]\nrgb = [0, 0, 0]", "is too grey or too dark"),
+}
+
+
+@pytest.mark.parametrize(("text", "says"), BAD_COLORS.values(), ids=BAD_COLORS.keys())
+def test_bad_colors_are_named(text: bytes, says: str, folder: Path) -> None:
+    (folder / "my.toml").write_bytes(text)
+    args = ("--calibration", "cal.json", "--colors", "my.toml")
+    assert says in refused(4, "camera", "locate", "table.png", *args, cwd=folder)
+
+
+def test_colors_that_cannot_be_read_are_named(folder: Path) -> None:
+    for path in ("none.toml", "."):
+        args = ("--calibration", "cal.json", "--colors", path)
+        line = refused(4, "camera", "locate", "table.png", *args, cwd=folder)
+        assert line.startswith(f"affcli: colors {path}: ")
+        assert line.endswith("; give a TOML file that can be read")
+
+
+WITHOUT = """
+import sys
+from importlib.machinery import PathFinder
+
+hidden = sys.argv.pop(1)
+
+
+class Finder(PathFinder):
+    @classmethod
+    def find_spec(cls, name, path=None, target=None):
+        if name.partition(".")[0] == hidden:
+            return None
+        return super().find_spec(name, path, target)
+
+
+sys.meta_path[sys.meta_path.index(PathFinder)] = Finder
+from affcli.cli.main import main
+
+sys.exit(main())
+"""
+"""The program where a package is not installed."""
+
+
+def without(package: str, *args: Arg) -> Ended:
+    """Run the program where a package is not installed."""
+    ended = subprocess.run(
+        [sys.executable, "-c", WITHOUT, package, *args],
+        env=environment(),
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        check=False,
+    )
+    assert "Traceback" not in ended.stderr, ended.stderr
+    return Ended(ended.returncode, ended.stdout, ended.stderr)
+
+
+@pytest.mark.parametrize("package", ["cv2", "PIL", "scipy"])
+def test_without_its_packages_the_camera_says_what_to_install(package: str, shared: Path) -> None:
+    for command in (("calibrate",), ("calibrate", shared / "pattern.png")):
+        assert without(package, "camera", *command) == Ended(2, "", f"{INSTALL}\n")
+
+
+def test_without_opencv_nothing_else_is_missed(shared: Path, tmp_path: Path) -> None:
+    table, calibration, database = shared / "table.png", shared / "cal.json", tmp_path / "my.db"
+    learn = ("learn", "--tool", "stick", "--behaviors", "5", "--db", database)
+    for command in (
+        ("camera", "locate", table, "--calibration", calibration),
+        ("camera", "view", "--out", tmp_path / "v.png"),
+        (*learn, "--sensor", "camera"),
+    ):
+        assert without("cv2", *command) == Ended(2, "", f"{INSTALL}\n")
+    assert names_in(tmp_path) == []
+    ended = without("cv2", *learn)
+    assert ended.code == 0
+    assert "what the stick affords" in ended.out
+    assert rows(database, "SELECT status, calibration FROM learning_run") == [("done", None)]
