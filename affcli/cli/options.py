@@ -18,6 +18,8 @@ LONGEST_HOURS = 10_000.0
 MOST_BEHAVIORS = 10_000_000
 MOST_ROBOTS = 100_000
 MOST_WORKERS = 256
+LONGEST = 1e6
+"""No length of this laboratory is greater."""
 
 # readable=False: whether a file can be read is for those to say who read it, with their exit code.
 Database = Annotated[
@@ -36,6 +38,7 @@ Config = Annotated[
         "--config", help="A TOML file of settings that differ.", metavar="FILE", readable=False
     ),
 ]
+Force = Annotated[bool, typer.Option("--force", help="Write over existing files.")]
 Sensor = Annotated[
     str | None,
     typer.Option(
@@ -71,6 +74,26 @@ def checked_count(option: str, count: int, most: int) -> int:
     if not 1 <= count <= most:
         raise BadInputError(f"{option} {one_line(count, 40)}: must lie in 1 to {most}")
     return count
+
+
+def checked_length(option: str, length: float) -> float:
+    """Return a length; BadInputError when it is not more than 0 and finite."""
+    if not (math.isfinite(length) and 0.0 < length <= LONGEST):
+        raise BadInputError(f"{option} {length}: must be more than 0 and at most {LONGEST:g}")
+    return length
+
+
+def checked_numbers(option: str, text: str, count: int) -> list[float]:
+    """Return so many numbers from a text with commas; BadInputError when it holds others."""
+    try:
+        values = [float(part) for part in text.split(",")]
+    except ValueError:
+        values = []
+    if len(values) != count or not all(math.isfinite(v) and abs(v) <= LONGEST for v in values):
+        raise BadInputError(
+            f"{option} {one_line(text, 40)}: must be {count} numbers with commas between them"
+        )
+    return values
 
 
 def checked_tool(name: str) -> str:

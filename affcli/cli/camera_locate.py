@@ -1,0 +1,40 @@
+"""``affcli camera locate``: where on the table a picture shows what is colour-coded (§4)."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from affcli.cli.options import AsJson
+from affcli.cli.terminal import show, show_json
+
+
+def locate(
+    image: Annotated[
+        Path, typer.Argument(help="A PNG or JPEG picture.", metavar="IMAGE", readable=False)
+    ],
+    *,
+    calibration: Annotated[
+        Path,
+        typer.Option(
+            "--calibration", help="What calibrate --out wrote.", metavar="FILE", readable=False
+        ),
+    ],
+    colors: Annotated[
+        Path | None,
+        typer.Option("--colors", help="A TOML file of colours.", metavar="FILE", readable=False),
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Say where a picture shows what is colour-coded.
+
+    Without --colors the colours of the simulated table are looked for.
+    """
+    from affcli.lab.photographs import locate_in_picture
+    from affcli.report.camera import places_json, places_table
+
+    places = locate_in_picture(image, calibration, colors)
+    if as_json:
+        show_json(places_json(places))
+    else:
+        show(places_table(places))

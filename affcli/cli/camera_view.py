@@ -1,0 +1,102 @@
+"""``affcli camera view``: what the camera sees, and how it is segmented (§4, Figs. 3 and 4)."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from affcli.cli.files import require_new, save
+from affcli.cli.options import DEFAULT_DATABASE, Config, Database, Force, Seed, checked_seed
+from affcli.cli.terminal import say
+from affcli.errors import BadInputError, UsageError, one_line
+
+if TYPE_CHECKING:
+    from affcli.store import StepScene
+
+Out = Annotated[Path | None, typer.Option("--out", help="The picture, *.png.", metavar="FILE")]
+Video = Annotated[
+    Path | None, typer.Option("--video", help="15 frames/s, *.mp4 or *.avi.", metavar="FILE")
+]
+Trial = Annotated[
+    int | None, typer.Option("--trial", help="A trial's id in the database.", metavar="ID")
+]
+Run = Annotated[
+    int | None, typer.Option("--run", help="A learning run's id, instead.", metavar="ID")
+]
+Step = Annotated[
+    int, typer.Option("--step", help="Step of the trial, or behavior of the run.", metavar="N")
+]
+After = Annotated[bool, typer.Option("--after", help="After the behavior, not before it.")]
+Pattern = Annotated[bool, typer.Option("--pattern", help="The calibration pattern alone.")]
+Frame = Annotated[bool, typer.Option("--frame", help="The camera's frame alone.")]
+
+
+def view(
+    *,
+    out: Out = None,
+    video: Video = None,
+    trial: Trial = None,
+    run: Run = None,
+    step: Step = 1,
+    after: After = False,
+    pattern: Pattern = False,
+    frame: Frame = False,
+    seed: Seed = 0,
+    database: Database = DEFAULT_DATABASE,
+    config: Config = None,
+    force: Force = False,
+) -> None:
+    """Show what the camera sees and how it is segmented.
+
+    The frame, and beside it the segmentation with the centroids, as in Figs. 3 and 4.
+
+    Of a step of a trial or a behavior of a learning run, whatever sensor it was seen through; or of
+    the table as a trial begins.
+    """
+    checked_seed(seed)
+    if out is None and video is None:
+        raise UsageError("where to? give --out FILE.png, or --video FILE.mp4")
+    if [trial is not None, run is not None, pattern].count(True) > 1:
+        raise UsageError("give one of --trial, --run and --pattern")
+    stored = trial is not None or run is not None
+    if video is not None and not stored:
+        raise UsageError("a video of what? give --trial ID or --run ID, and --step N")
+    if not stored and (after or step != 1):
+        raise UsageError("--step and --after go with --trial or --run")
+    for path in filter(None, (out, video)):
+        require_new(path, force=force)
+    if out is not None and out.suffix.lower() != ".png":
+        raise BadInputError(f"{one_line(out)}: name a picture *.png")
+
+    from affcli.config import load_settings
+    from affcli.lab.sensing import require_camera
+    from affcli.lab.viewing import film_of_step, view_of_pattern, view_of_step, view_of_table
+
+    require_camera()
+    settings = load_settings(config)
+    scene = _stored_scene(database, trial, run, step)
+    if scene is not None:
+        shown = view_of_step(scene, after=after)
+        if video is not None:
+            film_of_step(scene, video, frame_alone=frame)
+            say(f"{scene.title}, {scene.call}: {one_line(video)}")
+    else:
+        shown = view_of_pattern(settings, seed) if pattern else view_of_table(settings, seed)
+    if out is not None:
+        save(out, shown.png(frame_alone=frame))
+        say(f"{shown.title}: {one_line(out)}")
+
+
+def _stored_scene(
+    database: Path, trial: int | None, run: int | None, step: int
+) -> "StepScene | None":
+    """Return a step of a trial or a behavior of a run from the database; None for neither."""
+    from affcli.store import open_store
+
+    if trial is not None:
+        with open_store(database, create=False, write=False) as store:
+            return store.step_scene(trial, step)
+    if run is not None:
+        with open_store(database, create=False, write=False) as store:
+            return store.behavior_scene(run, step)
+    return None
