@@ -7,6 +7,7 @@ from affcli.cli import (
     break_tool,
     camera,
     db,
+    doctor,
     learn,
     report,
     reproduce,
@@ -28,6 +29,7 @@ app.command("break-tool")(break_tool.break_tool)
 app.command("report")(report.report)
 app.command("reproduce")(reproduce.reproduce)
 app.command("sql")(sql.sql)
+app.command("doctor")(doctor.doctor)
 app.add_typer(camera.app, name="camera")
 app.add_typer(db.app, name="db")
 

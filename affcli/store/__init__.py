@@ -8,10 +8,13 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from affcli.store.copying import backup
+    from affcli.store.health import Finding, check
     from affcli.store.info import DatabaseInfo, database_info
     from affcli.store.learning import LearningRunInfo, LearningStep
     from affcli.store.opening import open_store, upgrade
     from affcli.store.packing import PackedRobot, pack_robot
+    from affcli.store.place import Fact, State, place_facts
     from affcli.store.query import QueryResult, run_sql
     from affcli.store.repository import Store
     from affcli.store.results import (
@@ -28,6 +31,8 @@ if TYPE_CHECKING:
 __all__ = [
     "BehaviorGroup",
     "DatabaseInfo",
+    "Fact",
+    "Finding",
     "LearningRunInfo",
     "LearningStep",
     "OutcomeCount",
@@ -36,23 +41,30 @@ __all__ = [
     "RowUse",
     "SessionInfo",
     "SessionKind",
+    "State",
     "StepScene",
     "Store",
     "StoredStep",
     "SuccessCount",
     "TrialResult",
+    "backup",
+    "check",
     "database_info",
     "open_store",
     "pack_robot",
+    "place_facts",
     "run_sql",
     "upgrade",
 ]
 
 _HOMES = {
+    "copying": ("backup",),
+    "health": ("Finding", "check"),
     "info": ("DatabaseInfo", "database_info"),
     "learning": ("LearningRunInfo", "LearningStep"),
     "opening": ("open_store", "upgrade"),
     "packing": ("PackedRobot", "pack_robot"),
+    "place": ("Fact", "State", "place_facts"),
     "query": ("QueryResult", "run_sql"),
     "repository": ("Store",),
     "results": (

@@ -1,12 +1,13 @@
 """Opening a database: look first, migrate what is new, refuse what is not ours."""
 
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import sqlalchemy as sa
 
+from affcli.store.copying import backup_name, copy_of
 from affcli.store.database_file import look, opened, require_place, require_something
 from affcli.store.faults import faults_named
 from affcli.store.identity import REVISION, is_older, require_current, stored_revision
@@ -44,8 +45,20 @@ def open_store(
             yield store
 
 
-def upgrade(path: Path, *, timeout: float = PATIENCE) -> tuple[str, str]:
+def upgrade(
+    path: Path,
+    *,
+    timeout: float = PATIENCE,
+    copied: Callable[[Path], None] | None = None,
+) -> tuple[str, str]:
     """Bring an existing database to the schema of this affcli, in one transaction.
+
+    A copy of the database as it was is made first, beside it, and stays there.
+
+    Args:
+        path: the SQLite file.
+        timeout: seconds to wait for a lock that another process holds.
+        copied: told where the copy is, before anything is changed.
 
     Returns:
         The revisions before and after; equal when there was nothing to do.
@@ -57,6 +70,10 @@ def upgrade(path: Path, *, timeout: float = PATIENCE) -> tuple[str, str]:
     with opened(path, "rw", timeout) as driver:
         before = require_something(look(driver, path, timeout), path)
         if is_older(before):
+            copy = backup_name(path, before)
+            copy_of(driver, path, copy, timeout)
+            if copied is not None:
+                copied(copy)
             with _engine(driver).connect() as connection:
                 _migrate(Store(connection, driver, path, timeout), driver)
         else:

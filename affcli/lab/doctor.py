@@ -1,0 +1,40 @@
+"""Is all here that affcli needs? Python, packages, and where the database lies."""
+
+import platform
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+from affcli import __version__
+from affcli.store import Fact, State, place_facts
+
+NEEDED = ("numpy", "pymunk", "SQLAlchemy", "alembic", "typer", "rich")
+FOR_THE_CAMERA = ("opencv-python-headless", "pillow", "scipy")
+
+
+def facts(database: Path) -> tuple[Fact, ...]:
+    """Return what was found, each with what to do about it where that is needed.
+
+    Args:
+        database: the file that would be used.
+    """
+    return (
+        Fact("affcli", "ok", f"{__version__}, Python {platform.python_version()}"),
+        _packages("packages", NEEDED, "install affcli again", missing="bad"),
+        _packages(
+            "the camera", FOR_THE_CAMERA, "to use it: pip install 'affcli[camera]'", missing="look"
+        ),
+        *place_facts(database),
+    )
+
+
+def _packages(what: str, names: tuple[str, ...], remedy: str, *, missing: State) -> Fact:
+    """Say which versions of some packages are installed."""
+    found, lacking = [], []
+    for name in names:
+        try:
+            found.append(f"{name} {version(name)}")
+        except PackageNotFoundError:
+            lacking.append(name)
+    if lacking:
+        return Fact(what, missing, f"missing: {', '.join(lacking)}", remedy)
+    return Fact(what, "ok", ", ".join(found))

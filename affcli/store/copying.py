@@ -1,0 +1,83 @@
+"""Copies of a database: made while others use it, and before its schema changes."""
+
+import os
+import sqlite3
+import tempfile
+from contextlib import closing
+from itertools import count
+from pathlib import Path
+
+from affcli.errors import DatabaseError, one_line
+from affcli.store.database_file import look, opened, require_place, require_something
+from affcli.store.faults import faults_named
+from affcli.store.patience import PATIENCE, patiently
+
+
+def backup(path: Path, copy: Path, *, timeout: float = PATIENCE) -> None:
+    """Write a copy of a database, of any schema revision, as it is at one moment.
+
+    Others may read and write it meanwhile. The copy is checked, and appears whole or not at all,
+    over whatever stood there before.
+
+    Args:
+        path: the database.
+        copy: the file to write.
+        timeout: seconds to wait for a lock.
+
+    Raises:
+        DatabaseError: there is no sound database to copy, or the copy cannot be written.
+    """
+    require_place(path, create=False, write=False)
+    with opened(path, "rw", timeout) as driver:
+        require_something(look(driver, path, timeout), path)
+        copy_of(driver, path, copy, timeout)
+
+
+def copy_of(driver: sqlite3.Connection, path: Path, copy: Path, timeout: float) -> None:
+    """Write a copy of an opened database; see `backup`."""
+    folder = copy.absolute().parent
+    if copy.exists() and path.samefile(copy):
+        raise DatabaseError(f"{one_line(copy)}: that is the database itself; name another file")
+    try:
+        handle, name = tempfile.mkstemp(dir=folder, prefix=f".{copy.name[:40]}.")
+    except OSError as error:
+        raise DatabaseError(
+            f"{one_line(copy)}: no copy can be written there ({error.strerror}); name another place"
+        ) from error
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        with faults_named(copy, timeout), closing(sqlite3.connect(temporary)) as target:
+            # All pages in one step, under one read lock: the database at one moment.
+            patiently(lambda: driver.backup(target, pages=-1), timeout)
+            # A copy of a WAL database would need two more files beside it.
+            target.execute("PRAGMA journal_mode = delete")
+            verdict = target.execute("PRAGMA integrity_check(1)").fetchone()[0]
+        if verdict != "ok":
+            raise DatabaseError(
+                f"{one_line(path)}: damaged ({one_line(verdict)}), so no copy was made; restore an "
+                "older one"
+            )
+        _synced(temporary)
+        temporary.chmod(0o644)
+        temporary.replace(copy)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def backup_name(path: Path, revision: str) -> Path:
+    """Return a free name beside a database for its copy before a migration."""
+    names = (
+        path.with_name(f"{path.name}.{revision}{'' if n == 1 else f'-{n}'}.backup")
+        for n in count(1)
+    )
+    return next(name for name in names if not name.exists())
+
+
+def _synced(path: Path) -> None:
+    """Make sure that a file is on the disk."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,86 @@
+"""Is everything in a database as it must be? Pages, references, sums, and the counters."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from affcli.store.database_file import look, opened, require_place, require_something
+from affcli.store.faults import faults_named
+from affcli.store.identity import require_current
+from affcli.store.patience import PATIENCE
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One thing that was looked at.
+
+    Args:
+        what: in words.
+        wrong: how often it does not hold; 0 when all is well.
+        example: one place where it does not hold, empty when all is well.
+    """
+
+    what: str
+    wrong: int
+    example: str
+
+
+CHECKS = {
+    "a learning run has as many behaviors as it says": """
+        SELECT 'run ' || id FROM learning_run r WHERE behaviors
+        <> (SELECT count(*) FROM behavior WHERE learning_run_id = r.id)""",
+    "a learning run has as many rows as it says": """
+        SELECT 'run ' || id FROM learning_run r WHERE rows
+        <> (SELECT count(*) FROM affordance WHERE learning_run_id = r.id)""",
+    "each row comes from a behavior that moved the attractor": """
+        SELECT 'affordance ' || a.id FROM affordance a LEFT JOIN behavior b
+        ON b.learning_run_id = a.learning_run_id AND b.step = a.step
+        WHERE coalesce(b.change_detected, 0) <> 1""",
+    "a trial has as many steps as it says": """
+        SELECT 'trial ' || id FROM trial t WHERE steps IS NOT NULL AND steps
+        <> (SELECT count(*) FROM step WHERE trial_id = t.id)""",
+    "the steps of a trial are numbered without a gap": """
+        SELECT 'trial ' || trial_id FROM step GROUP BY trial_id HAVING max(number) <> count(*)""",
+    # §3.2: both counters are 1 when a row is made, and trials update them.
+    "the counters of a row are those of its steps": """
+        SELECT 'affordance ' || a.id FROM affordance a LEFT JOIN
+        (SELECT affordance_id, count(*) AS used, sum(replicated) AS successful FROM step
+        JOIN trial t ON t.id = trial_id WHERE t.counters = 'stored' GROUP BY affordance_id) s
+        ON s.affordance_id = a.id WHERE a.times_used <> 1 + coalesce(s.used, 0)
+        OR a.times_successful <> 1 + coalesce(s.successful, 0)""",
+    "a finished run needs nothing to go on": """
+        SELECT 'run ' || id FROM learning_run
+        WHERE (status = 'done') <> (checkpoint IS NULL) AND behaviors > 0""",
+}
+"""Each a query for the places where it does not hold."""
+
+
+def check(path: Path, *, timeout: float = PATIENCE) -> tuple[Finding, ...]:
+    """Look at the whole of a database; nothing is changed.
+
+    Raises:
+        DatabaseError: it cannot be opened, or its schema is another.
+    """
+    require_place(path, create=False, write=False)
+    with opened(path, "rw", timeout) as driver:
+        require_current(require_something(look(driver, path, timeout), path), path)
+        with faults_named(path, timeout):
+            driver.execute("BEGIN")
+            try:
+                pages = [
+                    row[0] for row in driver.execute("PRAGMA integrity_check") if row[0] != "ok"
+                ]
+                lost = driver.execute("PRAGMA foreign_key_check").fetchall()
+                found = [
+                    Finding("every page is sound", len(pages), *map(str, pages[:1] or [""])),
+                    Finding(
+                        "every reference leads somewhere",
+                        len(lost),
+                        f"{lost[0][0]}, to {lost[0][2]}" if lost else "",
+                    ),
+                ]
+                for what, query in CHECKS.items():
+                    places = [str(row[0]) for row in driver.execute(query)]
+                    found.append(Finding(what, len(places), places[0] if places else ""))
+            finally:
+                driver.execute("ROLLBACK")
+    return tuple(found)

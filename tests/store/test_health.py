@@ -1,0 +1,65 @@
+"""`check` finds what must not be, and nothing where all is well."""
+
+import sqlite3
+from pathlib import Path
+
+import pytest
+
+from affcli.errors import DatabaseError
+from affcli.lab.learning import learn
+from affcli.lab.solving import solve
+from affcli.store import Store, check, open_store
+from tests.lab.quick import now, spec_of
+
+
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A database with a learned tool, whose counters trials have changed."""
+    path = tmp_path_factory.mktemp("health") / "sound.db"
+    with open_store(path, create=True, write=True) as store:
+        run = learn(store, spec_of(behaviors=300), now).info
+        list(solve(store, [run], 2, [1, 2], 0, now))
+    return path
+
+
+def test_all_is_well_in_a_database_that_was_used(sound: Path) -> None:
+    findings = check(sound)
+    assert len(findings) == 9
+    assert [f for f in findings if f.wrong] == []
+
+
+def test_all_is_well_in_an_empty_one(store: Store) -> None:
+    assert not any(finding.wrong for finding in check(store.path))
+
+
+@pytest.mark.parametrize(
+    ("damage", "what"),
+    [
+        ("delete from behavior where step = 3", "as many behaviors as it says"),
+        ("update learning_run set rows = rows + 1", "as many rows as it says"),
+        ("update behavior set change_detected = 0", "comes from a behavior that moved"),
+        ("delete from step where trial_id = 1 and number = 1", "numbered without a gap"),
+        ("update trial set steps = steps + 1 where id = 2", "as many steps as it says"),
+        ("update affordance set times_used = times_used + 1", "counters of a row"),
+        ("update learning_run set checkpoint = '{}'", "needs nothing to go on"),
+        ("update trial set session_id = 99", "every reference leads somewhere"),
+    ],
+)
+def test_what_must_not_be_is_found(damage: str, what: str, sound: Path, tmp_path: Path) -> None:
+    path = tmp_path / "damaged.db"
+    path.write_bytes(sound.read_bytes())
+    driver = sqlite3.connect(path, isolation_level=None)
+    driver.execute(damage)
+    driver.close()
+    wrong = [finding for finding in check(path) if finding.wrong]
+    assert any(what in finding.what for finding in wrong)
+    assert all(finding.example for finding in wrong)
+
+
+def test_checking_changes_nothing_and_needs_a_database(sound: Path, tmp_path: Path) -> None:
+    before = sound.read_bytes()
+    check(sound)
+    assert sound.read_bytes() == before
+    with pytest.raises(DatabaseError, match="no database there"):
+        check(tmp_path / "none.db")
+    assert not (tmp_path / "none.db").exists()

@@ -1,0 +1,73 @@
+"""What can be relied on where a database lies (fault 17)."""
+
+from pathlib import Path
+
+import pytest
+
+from affcli.store import Fact, database_info, place_facts
+from affcli.store import place as place_module
+from affcli.store.place import file_system
+
+MOUNTS = """\
+/dev/sda1 / ext4 rw 0 0
+server:/home /home nfs4 rw 0 0
+/dev/sdb1 /home/local xfs rw 0 0
+//nas/lab /mnt/the\\040lab cifs rw 0 0
+"""
+
+
+def facts(path: Path) -> dict[str, Fact]:
+    return {fact.what: fact for fact in place_facts(path)}
+
+
+@pytest.mark.parametrize(
+    ("folder", "kind"),
+    [("/var", "ext4"), ("/home/me", "nfs4"), ("/home/local/me", "xfs"), ("/mnt/the lab/x", "cifs")],
+)
+def test_the_file_system_is_that_of_the_innermost_mount(folder: str, kind: str) -> None:
+    assert file_system(Path(folder), MOUNTS) == kind
+    assert file_system(Path(folder), "") == ""
+
+
+def test_here_all_is_well(database: Path) -> None:
+    found = facts(database)
+    assert set(found) == {"SQLite", "file system", "disk", "permissions", "database"}
+    assert {fact.state for fact in found.values()} == {"ok"}
+    assert not any(fact.remedy for fact in found.values())
+
+
+def test_a_network_file_system_is_pointed_out(
+    database: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(place_module, "file_system", lambda folder, mounts: "nfs4")
+    found = facts(database)["file system"]
+    assert found.state == "look"
+    assert "keep the database on a local disk" in found.remedy
+
+
+def test_a_write_ahead_log_that_this_sqlite_cannot_be_trusted_with(
+    database: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(place_module, "journal_mode_for", lambda version: "delete")
+    assert "so affcli does not use it" in facts(database)["SQLite"].value
+    info = database_info(database)
+    changed = type(info)(**{f: getattr(info, f) for f in info.__slots__} | {"journal_mode": "wal"})
+    monkeypatch.setattr(place_module, "database_info", lambda path: changed)
+    assert facts(database)["database"].state == "look"
+
+
+def test_what_must_be_mended_says_how(database: Path, tmp_path: Path) -> None:
+    assert facts(tmp_path / "no" / "x.db")["folder"].state == "bad"
+    junk = tmp_path / "junk.db"
+    junk.write_text("not a database, but longer than a header " * 20)
+    assert facts(junk)["database"].state == "bad"
+    old = tmp_path / "old.db"
+    old.write_bytes((Path(__file__).parent / "databases" / "0001.db").read_bytes())
+    assert facts(old)["database"].remedy == "run `affcli db upgrade`"
+    assert facts(tmp_path / "new.db")["database"].state == "ok"
+    assert not (tmp_path / "new.db").exists()
+
+
+def test_little_room_is_pointed_out(database: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(place_module, "LITTLE_SPACE", 10**18)
+    assert facts(database)["disk"].state == "look"
