@@ -5,6 +5,7 @@ Pictures are OpenCV's: (height, width, 3), 8 bits, blue green red.
 
 from collections.abc import Sequence
 from functools import cache
+from itertools import islice
 
 import cv2
 import numpy as np
@@ -17,7 +18,7 @@ from affcli.core.workspace import Workspace
 from affcli.perception.camera import Array
 from affcli.perception.camera_settings import CameraSettings
 from affcli.perception.palette import GOAL_COLOR
-from affcli.perception.solids import SIDE_SHADE, Prism, along_edges, prisms_of, shaded
+from affcli.perception.solids import SIDE_SHADE, Prism, along_edges, layers_of, shaded
 
 Picture = NDArray[np.uint8]
 
@@ -53,8 +54,8 @@ class Renderer:
     def take(self, scene: Scene, rng: np.random.Generator) -> Picture:
         """Return the picture of a scene; `rng` decides the noise."""
         plain, lit = self._table(scene.goal)
-        prisms = prisms_of(scene, self._workspace, self._camera)
-        return self._exposed(lit.copy(), plain, prisms, rng)
+        layers = layers_of(scene, self._workspace, self._camera)
+        return self._noisy(self._with(layers, lit.copy(), plain), rng)
 
     def take_flat(
         self, shapes: Sequence[tuple[Array, tuple[float, ...]]], rng: np.random.Generator
@@ -82,33 +83,51 @@ class Renderer:
         width, height = self._size
         return slice(0, height), slice(0, width)
 
-    def _exposed(
-        self, lit: Picture, plain: Picture, prisms: Sequence[Prism], rng: np.random.Generator
-    ) -> Picture:
-        """Draw prisms over the empty table and add the noise."""
+    def _with(self, layers: Sequence[Sequence[Prism]], lit: Picture, plain: Picture) -> Picture:
+        """Draw layers of prisms over the empty table.
+
+        Args:
+            layers: see `solids.layers_of`.
+            lit, plain: the table as lit, which is drawn upon, and in even light.
+        """
+        prisms = [prism for layer in layers for prism in layer]
+        corners, ends = self._corners(prisms)
+        seen = np.isfinite(corners).all(axis=1)
+        region = self._region(corners[seen])
+        if region is None:
+            return lit
+        rows, columns = region
+        fine = _finer(plain[region])
+        corner = np.array([columns.start, rows.start])
+        pieces = np.split(corners, ends)
+        shapes = iter(zip(prisms, pieces[: len(prisms)], pieces[len(prisms) :], strict=True))
+        for layer in layers:
+            # What lies behind the camera has no corners.
+            drawn = [s for s in islice(shapes, len(layer)) if np.isfinite((s[1], s[2])).all()]
+            for prism, bottom, top in drawn:
+                if prism.top > prism.bottom:
+                    both = np.concatenate([bottom, top]).astype(np.float32)
+                    hull = cv2.convexHull(both)[:, 0] - corner
+                    _fill(fine, hull, shaded(prism.color, SIDE_SHADE))
+            for prism, _, top in drawn:
+                _fill(fine, top - corner, shaded(prism.color, 1.0))
+        lit[region] = self._lit(_coarse(fine), region)
+        return lit
+
+    def _corners(self, prisms: Sequence[Prism]) -> tuple[Array, Array]:
+        """Return the pixels of the outlines of prisms: of all bottoms, then of all tops.
+
+        All at once, for that takes a third of the time of one after the other.
+
+        Returns:
+            (n, 2), px, and at which rows the second and all later outlines begin.
+        """
         outlines = [prism.outline for prism in prisms]
         counts = [len(outline) for outline in outlines]
         heights = np.array([(prism.bottom, prism.top) for prism in prisms])
-        bases = np.concatenate([*outlines, *outlines])
-        corners = self._seen(bases, np.concatenate([h.repeat(counts) for h in heights.T]))
-        ends = np.cumsum([*counts, *counts])[:-1]
-        pieces = np.split(corners, ends)
-        bottoms, tops = pieces[: len(prisms)], pieces[len(prisms) :]
-        region = self._region(corners[np.isfinite(corners).all(axis=1)])
-        if region is not None:
-            rows, columns = region
-            fine = _finer(plain[region])
-            corner = np.array([columns.start, rows.start])
-            for prism, bottom, top in zip(prisms, bottoms, tops, strict=True):
-                both = np.concatenate([bottom, top]).astype(np.float32)
-                if not np.isfinite(both).all():
-                    continue  # behind the camera
-                if prism.top > prism.bottom:
-                    hull = cv2.convexHull(both)[:, 0] - corner
-                    _fill(fine, hull, shaded(prism.color, SIDE_SHADE))
-                _fill(fine, top - corner, shaded(prism.color, 1.0))
-            lit[region] = self._lit(_coarse(fine), region)
-        return self._noisy(lit, rng)
+        each = np.concatenate([height.repeat(counts) for height in heights.T])
+        corners = self._seen(np.concatenate([*outlines, *outlines]), each)
+        return corners, np.cumsum([*counts, *counts])[:-1]
 
     def _seen(self, outline: Array, height: float | Array) -> Array:
         """Return the pixels (n, 2) of points (n, 2) at one height or at (n,) heights (in)."""

@@ -55,11 +55,11 @@ def along_edges(polygon: ConvexPolygon) -> Array:
     return np.concatenate(pieces)
 
 
-def prisms_of(scene: Scene, workspace: Workspace, camera: Camera) -> list[Prism]:
-    """Return what stands on the table, what the camera sees behind first.
+def layers_of(scene: Scene, workspace: Workspace, camera: Camera) -> list[list[Prism]]:
+    """Return what stands on the table in layers, what the camera sees behind first.
 
-    The parts of a tool share their height, so none hides the top of another; the puck is drawn
-    after the parts that lie behind it and before those in front.
+    The puck comes after the parts of the tool that lie behind it and before those in front. Within
+    a layer all sides come before all tops: parts of one height hide no top of each other.
     """
     puck_center, radius = scene.attractor.point, workspace.puck.radius
     puck = Prism(circle(puck_center, radius), 0.0, workspace.puck.height, scene.attractor_color)
@@ -75,7 +75,7 @@ def prisms_of(scene: Scene, workspace: Workspace, camera: Camera) -> list[Prism]
         (before if in_front else behind).append(prism)
     flange = workspace.arm.flange_height + scene.lift
     marker = Prism(circle(scene.wrist, WRIST_MARKER_RADIUS), flange, flange, WRIST_COLOR)
-    return [*behind, puck, *before, marker]
+    return [behind, [puck], before, [marker]]
 
 
 def _in_front(part: ConvexPolygon, puck: Point, camera: Camera) -> bool:

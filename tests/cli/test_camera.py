@@ -260,6 +260,23 @@ def test_a_bad_option_of_calibrate_is_named(name: str, folder: Path) -> None:
     assert names_in(folder) == ["cal.json", "pattern.png", "table.png"]
 
 
+IGNORED: dict[str, tuple[tuple[str, ...], str]] = {
+    "markers of no picture": (("--markers", "4x4"), "goes with an IMAGE of it; give one"),
+    "spacing of no picture": (("--spacing", "2"), "goes with an IMAGE of it; give one"),
+    "colour of no picture": (("--marker-color", "#c82828"), "goes with an IMAGE of it; give one"),
+    "turn of no picture": (("--turn", "180"), "goes with an IMAGE of it; give one"),
+    "seed of a picture": (("pattern.png", "--seed", "1"), "leave out IMAGE or them"),
+    "settings of a picture": (("pattern.png", "--config", "my.toml"), "leave out IMAGE or them"),
+}
+
+
+@pytest.mark.parametrize(("args", "says"), IGNORED.values(), ids=IGNORED.keys())
+def test_an_option_that_would_be_ignored_is_a_usage_error(
+    args: tuple[str, ...], says: str, folder: Path
+) -> None:
+    assert says in refused(2, "camera", "calibrate", *args, cwd=folder)
+
+
 def test_what_is_no_number_is_a_usage_error(folder: Path) -> None:
     for option in ("--spacing", "--turn", "--sensor-width", "--seed"):
         line = refused(2, "camera", "calibrate", "pattern.png", option, "much", cwd=folder)
@@ -353,15 +370,16 @@ def without(package: str, *args: Arg) -> Ended:
 
 
 @pytest.mark.parametrize("package", ["cv2", "PIL", "scipy"])
-def test_without_its_packages_the_camera_says_what_to_install(package: str, shared: Path) -> None:
-    for command in (("calibrate",), ("calibrate", shared / "pattern.png")):
-        assert without(package, "camera", *command) == Ended(2, "", f"{INSTALL}\n")
+def test_without_its_packages_the_camera_says_what_to_install(package: str) -> None:
+    assert without(package, "camera", "calibrate") == Ended(2, "", f"{INSTALL}\n")
 
 
 def test_without_opencv_nothing_else_is_missed(shared: Path, tmp_path: Path) -> None:
-    table, calibration, database = shared / "table.png", shared / "cal.json", tmp_path / "my.db"
+    pattern, table, calibration = (shared / n for n in ("pattern.png", "table.png", "cal.json"))
+    database = tmp_path / "my.db"
     learn = ("learn", "--tool", "stick", "--behaviors", "5", "--db", database)
     for command in (
+        ("camera", "calibrate", pattern),
         ("camera", "locate", table, "--calibration", calibration),
         ("camera", "view", "--out", tmp_path / "v.png"),
         (*learn, "--sensor", "camera"),
