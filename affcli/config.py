@@ -93,7 +93,16 @@ def settings_from_json(text: str) -> Settings:
     Raises:
         BadInputError: a section, key or value that this version does not know.
     """
-    return settings_with(json.loads(text), "the stored settings")
+    source = "the stored settings"
+    try:
+        stored = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise BadInputError(
+            f"{source}: {one_line(error)}; restore a copy of the database"
+        ) from error
+    if not isinstance(stored, dict):
+        raise BadInputError(f"{source}: no sections in them; restore a copy of the database")
+    return settings_with(stored, source)
 
 
 def load_settings(path: Path | None) -> Settings:
@@ -121,7 +130,12 @@ def load_colors(path: Path | None) -> tuple[ColorClass, ...]:
     if path is None:
         return paper_palette(Workspace())
     source = f"colors {one_line(path)}"
-    return palette(_color(name, value, source) for name, value in _toml(path, source).items())
+    sections = _toml(path, source)
+    if not sections:
+        raise BadInputError(
+            f"{source}: no colour in it; name one, as [cup] and rgb = [30, 110, 200]"
+        )
+    return palette((_color(name, value, source) for name, value in sections.items()), source)
 
 
 def _color(name: str, value: object, source: str) -> ColorClass:
@@ -141,7 +155,9 @@ def _color(name: str, value: object, source: str) -> ColorClass:
     if isinstance(height, bool) or not isinstance(height, int | float):
         raise BadInputError(f"{source}: {shown}.height = {one_line(height)} must be a number")
     if not 0.0 <= height <= LARGEST:
-        raise BadInputError(f"{source}: {shown}.height = {one_line(height)} must be 0 or more")
+        raise BadInputError(
+            f"{source}: {shown}.height = {one_line(height)} must lie in [0, {LARGEST:g}]"
+        )
     return ColorClass(name, Color(map(float, rgb)), Role.OBJECT, float(height))
 
 

@@ -6,13 +6,22 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from affcli.cli.files import require_new, save
-from affcli.cli.options import DEFAULT_DATABASE, Config, Database, Force, Seed, checked_seed
+from affcli.cli.options import (
+    DEFAULT_DATABASE,
+    Config,
+    Database,
+    Force,
+    Seed,
+    checked_count,
+    checked_seed,
+)
 from affcli.cli.terminal import say
 from affcli.errors import BadInputError, UsageError, one_line
 
 if TYPE_CHECKING:
     from affcli.store import StepScene
 
+LARGEST_ID = 2**63 - 1
 Out = Annotated[Path | None, typer.Option("--out", help="The picture, *.png.", metavar="FILE")]
 Video = Annotated[
     Path | None, typer.Option("--video", help="15 frames/s, *.mp4 or *.avi.", metavar="FILE")
@@ -54,19 +63,8 @@ def view(
     the table as a trial begins.
     """
     checked_seed(seed)
-    if out is None and video is None:
-        raise UsageError("where to? give --out FILE.png, or --video FILE.mp4")
-    if [trial is not None, run is not None, pattern].count(True) > 1:
-        raise UsageError("give one of --trial, --run and --pattern")
-    stored = trial is not None or run is not None
-    if video is not None and not stored:
-        raise UsageError("a video of what? give --trial ID or --run ID, and --step N")
-    if not stored and (after or step != 1):
-        raise UsageError("--step and --after go with --trial or --run")
-    for path in filter(None, (out, video)):
-        require_new(path, force=force)
-    if out is not None and out.suffix.lower() != ".png":
-        raise BadInputError(f"{one_line(out)}: name a picture *.png")
+    _check_what(trial, run, step, after=after, pattern=pattern, video=video, own=(seed, config))
+    _check_where(out, video, force=force)
 
     from affcli.config import load_settings
     from affcli.lab.sensing import require_camera
@@ -78,13 +76,53 @@ def view(
     if scene is not None:
         shown = view_of_step(scene, after=after)
         if video is not None:
-            film_of_step(scene, video, frame_alone=frame)
+            save(video, film_of_step(scene, video.suffix.lower(), frame_alone=frame))
             say(f"{scene.title}, {scene.call}: {one_line(video)}")
     else:
         shown = view_of_pattern(settings, seed) if pattern else view_of_table(settings, seed)
     if out is not None:
         save(out, shown.png(frame_alone=frame))
         say(f"{shown.title}: {one_line(out)}")
+
+
+def _check_what(
+    trial: int | None,
+    run: int | None,
+    step: int,
+    *,
+    after: bool,
+    pattern: bool,
+    video: Path | None,
+    own: tuple[int, Path | None],
+) -> None:
+    """Refuse options that do not go together: nothing that is asked for is ignored."""
+    if [trial is not None, run is not None, pattern].count(True) > 1:
+        raise UsageError("give one of --trial, --run and --pattern")
+    stored = trial is not None or run is not None
+    if stored and own != (0, None):
+        raise UsageError(
+            "--trial and --run have a seed and settings: leave out --seed and --config"
+        )
+    if not stored and video is not None:
+        raise UsageError("a video of what? give --trial ID or --run ID, and --step N")
+    if not stored and (after or step != 1):
+        raise UsageError("--step and --after go with --trial or --run")
+    for option, number in (("--trial", trial), ("--run", run), ("--step", step)):
+        if number is not None:
+            checked_count(option, number, LARGEST_ID)
+
+
+def _check_where(out: Path | None, video: Path | None, *, force: bool) -> None:
+    """Refuse files that cannot be written or have another ending, before any work is done."""
+    if out is None and video is None:
+        raise UsageError("where to? give --out FILE.png, or --video FILE.mp4")
+    for path, endings in ((out, (".png",)), (video, (".mp4", ".avi"))):
+        if path is None:
+            continue
+        require_new(path, force=force)
+        if path.suffix.lower() not in endings:
+            wanted = " or ".join(f"*{ending}" for ending in endings)
+            raise BadInputError(f"{one_line(path)}: name it {wanted}")
 
 
 def _stored_scene(

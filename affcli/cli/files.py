@@ -18,7 +18,8 @@ def require_new(path: Path, *, force: bool) -> None:
     try:
         exists, is_file, folder = path.exists(), path.is_file(), path.absolute().parent.is_dir()
     except (OSError, ValueError) as error:
-        raise BadInputError(f"{shown}: {one_line(error)}; name another file") from error
+        why = one_line(getattr(error, "strerror", None) or error)
+        raise BadInputError(f"{shown}: {why}; name another file") from error
     if exists and not is_file:
         raise BadInputError(f"{shown}: not a file; name another")
     if exists and not force:

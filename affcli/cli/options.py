@@ -18,8 +18,8 @@ LONGEST_HOURS = 10_000.0
 MOST_BEHAVIORS = 10_000_000
 MOST_ROBOTS = 100_000
 MOST_WORKERS = 256
-LONGEST = 1e6
-"""No length of this laboratory is greater."""
+SHORTEST, LONGEST = 1e-3, 1e4
+"""No length of this laboratory lies beyond them."""
 
 # readable=False: whether a file can be read is for those to say who read it, with their exit code.
 Database = Annotated[
@@ -77,9 +77,9 @@ def checked_count(option: str, count: int, most: int) -> int:
 
 
 def checked_length(option: str, length: float) -> float:
-    """Return a length; BadInputError when it is not more than 0 and finite."""
-    if not (math.isfinite(length) and 0.0 < length <= LONGEST):
-        raise BadInputError(f"{option} {length}: must be more than 0 and at most {LONGEST:g}")
+    """Return a length; BadInputError when it is none that a laboratory has."""
+    if not (math.isfinite(length) and SHORTEST <= length <= LONGEST):
+        raise BadInputError(f"{option} {length}: must lie in {SHORTEST:g} to {LONGEST:g}")
     return length
 
 
@@ -91,7 +91,8 @@ def checked_numbers(option: str, text: str, count: int) -> list[float]:
         values = []
     if len(values) != count or not all(math.isfinite(v) and abs(v) <= LONGEST for v in values):
         raise BadInputError(
-            f"{option} {one_line(text, 40)}: must be {count} numbers with commas between them"
+            f"{option} {one_line(text, 40)}: must be {count} numbers within {LONGEST:g}, with "
+            "commas between them"
         )
     return values
 

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from affcli.config import settings_from_json, with_sensor
 from affcli.core.observation import SensorKind
 from affcli.core.trial import Protocol, TrialRecord
+from affcli.lab.sensing import calibration_of
 from affcli.lab.trials import LostAffordances, trial_specs, whole_trial
 from affcli.lab.versions import versions
 from affcli.simulation.world import World
@@ -36,6 +37,8 @@ def break_tool(
         Each trial once it is saved, the broken tool's first.
     """
     settings = with_sensor(settings_from_json(run.spec.settings), sensor)
+    # A camera that is not there, or cannot be calibrated, is found before anything is recorded.
+    calibration_of(settings, seed, run.spec.robot)
     kind = settings.sensor.kind
     table, ids = store.affordance_table(run.id, as_learned=True)
     world = World(settings.workspace, settings.physics)

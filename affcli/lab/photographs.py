@@ -44,13 +44,14 @@ def calibrate_picture(
     require_camera()
     from affcli.perception.calibration import calibrate
     from affcli.perception.camera import ImageSensor
-    from affcli.perception.images import read_picture
+    from affcli.perception.images import read_picture, shrunk, unshrunk
     from affcli.perception.markers import find_markers
 
     picture = read_picture(path)
     height, width = picture.shape[:2]
     try:
-        markers = find_markers(picture, pattern, color)
+        small, side = shrunk(picture)
+        markers = unshrunk(find_markers(small, pattern, color), side)
         return calibrate(markers, pattern.places, ImageSensor(width, height, sensor_width))
     except BadInputError as error:
         raise BadInputError(f"{one_line(path)}: {error}") from error
@@ -72,14 +73,19 @@ def locate_in_picture(
     """
     require_camera()
     from affcli.perception.camera import Camera
-    from affcli.perception.images import read_picture
+    from affcli.perception.images import read_picture, shrunk
     from affcli.perception.location import places_of
     from affcli.perception.segmentation import Segmenter
 
     classes = load_colors(colors)
     try:
         camera = Camera.from_json(_json(calibration))
-    except (KeyError, TypeError, ValueError) as error:
+    except KeyError as error:
+        raise BadInputError(
+            f"{one_line(calibration)}: not a calibration (no {one_line(error)} in it); make one "
+            "with `affcli camera calibrate PICTURE --out FILE`"
+        ) from error
+    except (TypeError, ValueError, OverflowError) as error:
         raise BadInputError(
             f"{one_line(calibration)}: not a calibration ({one_line(error)}); make one with "
             "`affcli camera calibrate PICTURE --out FILE`"
@@ -92,7 +98,8 @@ def locate_in_picture(
             f"{one_line(path)}: {width}x{height} pixels, but the camera was calibrated at "
             f"{size[0]}x{size[1]}; take both pictures alike"
         )
-    places = places_of(Segmenter(classes).segment(picture), camera)
+    small, side = shrunk(picture)
+    places = places_of(Segmenter(classes).segment(small), camera, side)
     if not any(places.values()):
         names = ", ".join(one_line(name, 40) for name in places)
         raise BadInputError(

@@ -62,9 +62,10 @@ def calibration_of(settings: Settings, seed: int, robot: int) -> str | None:
     """Return what the camera's calibration gave, as canonical JSON; None without a camera."""
     if settings.sensor.kind != "camera":
         return None
+    calibration = eye_of(settings, seed, robot).calibration
     from affcli.perception.calibration import to_text
 
-    return to_text(eye_of(settings, seed, robot).calibration)
+    return to_text(calibration)
 
 
 def require_sensor(settings: Settings) -> None:

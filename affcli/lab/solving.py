@@ -61,12 +61,12 @@ def solve(
     Yields:
         Each step once it is saved, and each trial's end.
     """
-    first = with_sensor(settings_from_json(runs[0].spec.settings), sensor)
-    made_with = versions(first.sensor.kind)
-    session = store.begin_session("solve", seed, 1, first.to_json(), made_with, now())
-    for run in runs:
-        settings = with_sensor(settings_from_json(run.spec.settings), sensor)
-        calibration = calibration_of(settings, seed, run.spec.robot)
+    seeing = [with_sensor(settings_from_json(run.spec.settings), sensor) for run in runs]
+    # A camera that is not there, or cannot be calibrated, is found before anything is recorded.
+    eyes = [calibration_of(s, seed, r.spec.robot) for s, r in zip(seeing, runs, strict=True)]
+    made_with = versions(seeing[0].sensor.kind)
+    session = store.begin_session("solve", seed, 1, seeing[0].to_json(), made_with, now())
+    for run, settings, calibration in zip(runs, seeing, eyes, strict=True):
         world = World(settings.workspace, settings.physics)
         for start in starts:
             spec = TrialSpec(

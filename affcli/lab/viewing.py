@@ -1,7 +1,7 @@
 """Pictures of what the robot saw: one frame, or a behavior at 15 frames a second (§4)."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,12 +12,14 @@ from affcli.core.geometry import Pose
 from affcli.core.observation import Observation
 from affcli.core.scene import Scene
 from affcli.core.task import goal_regions, start_positions
-from affcli.core.tool import PUCK_COLOR
+from affcli.core.tool import PUCK_COLOR, TOOL_PARTS
+from affcli.errors import DatabaseError
 from affcli.lab.bench import TRIAL, Bench, tool_named
 from affcli.lab.sensing import eye_of
 from affcli.simulation.world import World
 
 if TYPE_CHECKING:
+    from affcli.perception.rendering import Picture
     from affcli.perception.segmentation import Segmentation
     from affcli.store import StepScene
 
@@ -89,30 +91,39 @@ def view_of_step(step: "StepScene", *, after: bool) -> View:
     scene = replace(scene, attractor=Pose(*attractor), wrist=wrist)
     moment = "after" if after else "before"
     what = f"{step.title}, {moment} {step.call}"
+    if step.blocked:
+        what = f"{step.title}: blocked, {step.call} was not executed"
     return View(what, _seen(scene, settings, step.seed, step.robot, VIEW, *step.key))
 
 
-def film_of_step(step: "StepScene", path: Path, *, frame_alone: bool) -> None:
-    """Write what the camera saw during a step as a video, 15 frames a robot second.
+def film_of_step(step: "StepScene", ending: str, *, frame_alone: bool) -> bytes:
+    """Return what the camera saw during a step as a video, 15 frames a robot second.
 
     It is executed again from its record: the tool is carried to where it began, then comes the
     exploratory behavior, unless the tool could not be lowered.
 
+    Args:
+        step: which.
+        ending: of the file's name, which says the format: ``.mp4`` or ``.avi``.
+        frame_alone: without the segmentation beside it.
+
     Raises:
-        BadInputError: the video cannot be written there.
+        BadInputError: the video cannot be made.
     """
-    from affcli.perception.view import save_video, side_by_side
+    from affcli.perception.view import side_by_side, video
 
     settings = settings_from_json(step.settings)
     rng = np.random.Generator(np.random.PCG64((VIEW, *step.key)))
     eye = eye_of(settings, step.seed, step.robot)
     title = f"{step.title}, {step.call}"
-    pictures = []
-    for scene in scenes_of_step(step, settings):
-        picture = eye.renderer.take(scene, rng)
-        seen = eye.segmenter.segment(picture)
-        pictures.append(picture if frame_alone else side_by_side(seen, title))
-    save_video(path, pictures, FRAME_RATE)
+
+    def pictures() -> Iterator["Picture"]:
+        """Yield one picture after the other: a long stillness would fill the memory."""
+        for scene in scenes_of_step(step, settings):
+            picture = eye.renderer.take(scene, rng)
+            yield picture if frame_alone else side_by_side(eye.segmenter.segment(picture), title)
+
+    return video(pictures(), ending, FRAME_RATE)
 
 
 def scenes_of_step(step: "StepScene", settings: Settings) -> list[Scene]:
@@ -141,6 +152,8 @@ def scenes_of_step(step: "StepScene", settings: Settings) -> list[Scene]:
 
 def _scene(step: "StepScene", settings: Settings) -> Scene:
     """Return the scene in which a step began."""
+    if not {step.tool, step.shape} <= set(TOOL_PARTS):
+        raise DatabaseError(f"{step.title} holds a tool that affcli does not know")
     believed = tool_named(settings, step.tool)
     goals = goal_regions(settings.workspace.layout)
     return Scene(

@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+LARGEST, SMALLEST_MM, LARGEST_SIDE = 1e6, 1e-3, 100_000
+"""Bounds of what a stored camera may say: numbers, lengths (mm), sides of the picture (px)."""
 NEWTON_STEPS = 8
 """Steps to distort a position: enough for the last bit up to 15 % of distortion."""
 
@@ -154,8 +156,9 @@ class Camera:
             KeyError, TypeError, ValueError: it was not written by `as_json`.
         """
         width, height = values["width_px"], values["height_px"]
-        if not (isinstance(width, int) and isinstance(height, int) and min(width, height) > 0):
-            raise ValueError("width_px and height_px must be whole numbers above 0")
+        for name, size in (("width_px", width), ("height_px", height)):
+            if isinstance(size, bool) or not isinstance(size, int) or not 0 < size <= LARGEST_SIDE:
+                raise ValueError(f"{name} must be a whole number from 1 to {LARGEST_SIDE}")
         width_mm, focal_length, kappa = (
             float(values[name])
             for name in ("sensor_width_mm", "focal_length_mm", "distortion_per_mm2")
@@ -164,11 +167,14 @@ class Camera:
         translation = np.array(values["translation_in"], dtype=np.float64)
         if rotation.shape != (3, 3) or translation.shape != (3,):
             raise ValueError("rotation must be 3 by 3, translation_in 3 numbers")
-        finite = np.isfinite([width_mm, focal_length, kappa, *rotation.ravel(), *translation])
-        if not (finite.all() and min(width_mm, focal_length) > 0.0):
-            raise ValueError("all numbers must be finite, width and focal length above 0")
-        if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-6:
-            raise ValueError("the rows of rotation must be at right angles and of length 1")
+        numbers = np.array([width_mm, focal_length, kappa, *rotation.ravel(), *translation])
+        if not (np.isfinite(numbers).all() and np.abs(numbers).max() <= LARGEST):
+            raise ValueError(f"all numbers must lie within {LARGEST:g}")
+        if min(width_mm, focal_length) < SMALLEST_MM:
+            raise ValueError(f"sensor width and focal length must be at least {SMALLEST_MM:g} mm")
+        square = np.abs(rotation @ rotation.T - np.eye(3)).max() <= 1e-6
+        if not (square and np.linalg.det(rotation) > 0.0):
+            raise ValueError("the rows of rotation must be the axes of a camera")
         return cls(
             ImageSensor(width, height, width_mm),
             focal_length,

@@ -7,7 +7,7 @@ be off by a quarter of an inch. The wrist's disc lies at the height of the flang
 table.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -162,7 +162,7 @@ class Place:
     Args:
         name: of its class.
         point: where it is (in, table frame); NaN when its line of sight misses the table.
-        blob: in the picture.
+        blob: in the camera's picture, but for its box.
         color: as seen.
     """
 
@@ -172,19 +172,26 @@ class Place:
     color: Color
 
 
-def places_of(seen: Segmentation, camera: Camera) -> dict[str, list[Place]]:
+def places_of(seen: Segmentation, camera: Camera, side: int = 1) -> dict[str, list[Place]]:
     """Return for each class, by name, where its blobs are, largest first.
 
     A second blob counts when it is of like size. A class that is not seen has none.
+
+    Args:
+        seen: the segmented picture.
+        camera: that took it.
+        side: how many pixels of the camera's make one of the picture's, in each direction.
     """
-    return {
-        one.name: [
-            Place(one.name, place_of(blob, one, camera), blob, seen.color(k, blob))
-            for blob in blobs
-            if blob.area >= ALIKE * blobs[0].area
-        ]
-        for k, (one, blobs) in enumerate(zip(seen.classes, seen.blobs, strict=True))
-    }
+    found: dict[str, list[Place]] = {}
+    for k, (one, blobs) in enumerate(zip(seen.classes, seen.blobs, strict=True)):
+        found[one.name] = []
+        for blob in blobs:
+            if blob.area >= ALIKE * blobs[0].area:
+                x, y = ((v + 0.5) * side - 0.5 for v in (blob.x, blob.y))
+                whole = replace(blob, x=x, y=y, area=blob.area * side**2)
+                point = place_of(whole, one, camera)
+                found[one.name].append(Place(one.name, point, whole, seen.color(k, blob)))
+    return found
 
 
 def the_one(seen: Segmentation, role: Role) -> tuple[int, Blob]:

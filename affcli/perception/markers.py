@@ -39,6 +39,8 @@ HUES = 6
 OFF_GRID = 0.35
 """No marker may lie farther than this from its place in the grid (in spacings): the lens may bend
 the grid by a tenth of that, and beyond a half the order would be a guess."""
+MOST_CORNERS = 24
+"""Of a hull; a pattern of 6x6 has 20 at the most."""
 OVER_EXPOSED = 0.5
 """Share of white pixels above which a picture is called over-exposed."""
 
@@ -137,7 +139,7 @@ def ordered(points: Array, pattern: Pattern) -> Array:
     if best is None:
         raise BadInputError(
             f"the {len(points)} markers found form no grid of {pattern.columns}x{pattern.rows}; "
-            "give --markers, and uncover the whole pattern"
+            "give --markers as they are, and uncover the whole pattern"
         )
     return best[1]
 
@@ -162,7 +164,7 @@ def _frequent_hues(picture: Picture) -> list[float]:
 
 def _hue(color: Color) -> float:
     """Return the hue of a colour, degrees; BadInputError when it is too grey or dark for one."""
-    (checked,) = palette([ColorClass("the markers' colour", color, Role.OBJECT)])
+    (checked,) = palette([ColorClass("the colour", color, Role.OBJECT)], "--marker-color")
     return checked.hue
 
 
@@ -213,6 +215,11 @@ def _widest_four(points: Array) -> Array:
     hull = cv2.convexHull(points.astype(np.float32))[:, 0].astype(np.float64)
     if len(hull) < 4:
         raise BadInputError("the markers found lie on a line; bring the whole pattern into view")
+    # The corners of the grid are where the hull turns most; dozens of others would take for ever.
+    coarse = 0.005 * cv2.arcLength(hull.astype(np.float32), closed=True)
+    while len(hull) > MOST_CORNERS:
+        kept = cv2.approxPolyDP(hull.astype(np.float32), coarse, closed=True)
+        hull, coarse = kept[:, 0].astype(np.float64), 1.5 * coarse
     fours = hull[np.array(list(combinations(range(len(hull)), 4)))]
     first, second = fours[:, 2] - fours[:, 0], fours[:, 3] - fours[:, 1]
     areas = np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])

@@ -57,10 +57,14 @@ class ColorClass:
         return 360.0 * colorsys.rgb_to_hsv(*(c / 255.0 for c in self.color))[0]
 
 
-def palette(classes: Iterable[ColorClass]) -> tuple[ColorClass, ...]:
+def palette(classes: Iterable[ColorClass], source: str = "colors") -> tuple[ColorClass, ...]:
     """Return the classes after making sure that pixels can be told apart by hue.
 
     Hue does not change with the brightness of the light; that is why the classes are told by it.
+
+    Args:
+        classes: what has which colour.
+        source: where they come from, for the message.
 
     Raises:
         BadInputError: a colour that is grey or dark, or two whose hues lie too close.
@@ -71,13 +75,13 @@ def palette(classes: Iterable[ColorClass]) -> tuple[ColorClass, ...]:
         shown = f"{one_line(one.name)} ({', '.join(f'{c:g}' for c in one.color)})"
         if saturation < LEAST_SATURATION + 0.1 or value < LEAST_VALUE + 0.1:
             raise BadInputError(
-                f"colors: {shown} is too grey or too dark to be told from the table; paint it in a "
-                "strong colour"
+                f"{source}: {shown} is too grey or too dark to be told from the table; paint it in "
+                "a strong colour"
             )
         for other in checked:
             if hue_distance(one.hue, other.hue) < CLOSEST_HUES:
                 raise BadInputError(
-                    f"colors: {shown} and {one_line(other.name)} differ by less than "
+                    f"{source}: {shown} and {one_line(other.name)} differ by less than "
                     f"{CLOSEST_HUES:g} degrees of hue; paint one of them in another colour"
                 )
         checked.append(one)

@@ -122,9 +122,11 @@ def blobs_of(
     mask = mask[inner_top : inner_top + height, inner_left : inner_left + width]
     _, _, stats, centers = cv2.connectedComponentsWithStats(mask, connectivity=4)
     left, top = left + inner_left, top + inner_top
+    large = 1 + np.flatnonzero(stats[1:, cv2.CC_STAT_AREA] >= least)
     found = [
-        Blob(x + left, y + top, int(area), int(x0) + left, int(y0) + top, int(w), int(h))
-        for (x0, y0, w, h, area), (x, y) in zip(stats[1:], centers[1:].tolist(), strict=True)
-        if area >= least
+        Blob(x + left, y + top, area, x0 + left, y0 + top, w, h)
+        for (x0, y0, w, h, area), (x, y) in zip(
+            stats[large].tolist(), centers[large].tolist(), strict=True
+        )
     ]
     return tuple(sorted(found, key=lambda blob: -blob.area))

@@ -1,6 +1,8 @@
 """What the camera sees beside what the robot makes of it: the pictures of Figs. 3 and 4."""
 
-from collections.abc import Sequence
+import os
+import tempfile
+from collections.abc import Iterable
 from pathlib import Path
 
 import cv2
@@ -63,34 +65,57 @@ def segmentation_picture(seen: Segmentation) -> Picture:
     return picture
 
 
-def save_video(path: Path, pictures: Sequence[Picture], rate: float) -> None:
-    """Write pictures as a video.
+def video(pictures: Iterable[Picture], ending: str, rate: float) -> bytes:
+    """Return pictures as the bytes of a video.
+
+    OpenCV writes videos to files alone, takes some names for addresses, and does not say when the
+    disk is full: so to a file of a plain name, which is then read again.
 
     Args:
-        path: ends in .mp4 or .avi, which decides the format.
-        pictures: all of one size.
+        pictures: all of one size, at least one.
+        ending: of the name of such a file: a key of `CODECS`.
         rate: pictures a second.
 
     Raises:
-        BadInputError: another ending, or it cannot be written there.
+        BadInputError: it cannot be made.
     """
-    codec = CODECS.get(path.suffix.lower())
-    if codec is None:
-        raise BadInputError(
-            f"{one_line(path)}: name a video {' or '.join(f'*{c}' for c in CODECS)}"
-        )
-    height, width = pictures[0].shape[:2]
-    fourcc = cv2.VideoWriter.fourcc(*codec)
-    writer = cv2.VideoWriter(str(path), fourcc, rate, (width, height))
+    # What OpenCV has to say of files goes into one line of ours.
+    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
+    os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
+    count = 0
+    writer: cv2.VideoWriter | None = None
     try:
-        if not writer.isOpened():
-            raise BadInputError(
-                f"{one_line(path)}: the video cannot be written; name another place, or *.avi"
-            )
-        for picture in pictures:
-            writer.write(picture)
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / f"video{ending}"
+            for picture in pictures:
+                if writer is None:
+                    fourcc = cv2.VideoWriter.fourcc(*CODECS[ending])
+                    size = (picture.shape[1], picture.shape[0])
+                    writer = cv2.VideoWriter(str(path), fourcc, rate, size)
+                writer.write(picture)
+                count += 1
+            if writer is not None:
+                writer.release()
+            if not (path.exists() and _frames_in(path) == count):
+                raise BadInputError(
+                    "the video could not be made; make room on the disk, or try *.avi"
+                )
+            return path.read_bytes()
+    except OSError as error:
+        raise BadInputError(f"the video could not be made: {error.strerror}; make room") from error
     finally:
-        writer.release()
+        if writer is not None:
+            writer.release()
+
+
+def _frames_in(path: Path) -> int:
+    """Return how many frames of a video can be read."""
+    reader = cv2.VideoCapture(str(path))
+    count = 0
+    while reader.grab():
+        count += 1
+    reader.release()
+    return count
 
 
 def _cross(picture: Picture, x: float, y: float, arm_px: int) -> None:

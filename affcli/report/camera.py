@@ -89,7 +89,7 @@ def places_table(places: Mapping[str, Sequence[SeenPlace]]) -> Sheet:
             table.add(
                 one_line(name, 40),
                 condition(found),
-                *(f"{value:.2f}" for value in place.point),
+                *(f"{round(v, 2) + 0.0:.2f}" if math.isfinite(v) else "-" for v in place.point),
                 f"{place.blob.x:.1f}, {place.blob.y:.1f}",
                 str(place.blob.area),
                 ", ".join(f"{value:.0f}" for value in place.color),

@@ -78,7 +78,8 @@ class Scenes(Connected):
             count = connection.execute(steps).scalar_one()
             row, before = _this_and_the_one_before(connection, taken, number)
         if row is None:
-            raise UsageError(f"no step {number} in trial {trial_id}; it has steps 1 to {count}")
+            known = f"it has steps 1 to {count}" if count else "it has none"
+            raise UsageError(f"no step {number} in trial {trial_id}; {known}")
         title = f"Trial {trial_id}, step {number} of {count}"
         return _scene(title, (trial_id, number), tuple(found), row, before)
 

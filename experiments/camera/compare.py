@@ -2,9 +2,9 @@
 
     .venv/bin/python experiments/camera/compare.py CAMERA.db NOISY.db [--json FILE]
 
-Both are of the same seed and number of robots, which differ in one thing, here the sensor. Prints
-the mean difference of the successes in each cell and in the total, first less second, with its 95 %
-interval (normal, over robots).
+Both are of the same seed and differ in one thing, here the sensor; robots that only one of them has
+are left out. Prints the mean difference of the successes in each cell and in the total, first less
+second, with its 95 % interval (normal, over robots).
 """
 
 import argparse
@@ -36,15 +36,19 @@ def main() -> None:
     parser.add_argument("--json", type=Path, help="write the figures there too")
     args = parser.parse_args()
     first, second = successes(args.first), successes(args.second)
-    if (
-        first.keys() != second.keys()
-        or len({len(v) for v in (*first.values(), *second.values())}) > 1
-    ):
-        parser.error("the two databases do not hold the same robots, tools and goals")
-    rows = {cell: interval(first[cell] - second[cell]) for cell in first}
-    paper = [cell for cell in first if cell[0] == "extension of reach"]
-    total = interval(sum(first[cell] - second[cell] for cell in paper))
-    broken = interval(sum(first[c] - second[c] for c in first if c not in paper))
+    robots = robots_of(first) & robots_of(second)
+    if first.keys() != second.keys() or not robots:
+        parser.error("the two databases hold no robots with the same tools and goals in common")
+    differences = {
+        cell: np.array(
+            [first[cell][robot] - second[cell][robot] for robot in sorted(robots)], float
+        )
+        for cell in first
+    }
+    rows = {cell: interval(found) for cell, found in differences.items()}
+    paper = [cell for cell in rows if cell[0] == "extension of reach"]
+    total = interval(sum(differences[cell] for cell in paper))
+    broken = interval(sum(found for cell, found in differences.items() if cell not in paper))
     for (protocol, tool, goal), (mean, low, high) in rows.items():
         if protocol == "extension of reach":
             inside = low >= -CELL_BAR and high <= CELL_BAR
@@ -56,7 +60,7 @@ def main() -> None:
         print(f"{name}: {mean:+.2f} ({low:+.2f} to {high:+.2f})")
     cells = {f"{tool}, goal {goal}": rows[p, tool, goal] for p, tool, goal in paper}
     result: dict[str, Any] = {
-        "robots": len(next(iter(first.values()))),
+        "robots": len(robots),
         "cells": cells,
         "total": total,
         "broken": broken,
@@ -68,14 +72,19 @@ def main() -> None:
         args.json.write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
 
 
-def successes(path: Path) -> dict[tuple[str, str, int], NDArray[np.float64]]:
+def successes(path: Path) -> dict[tuple[str, str, int], dict[int, int]]:
     """Return the successes of each robot, by protocol, tool and goal."""
-    found: dict[tuple[str, str, int], list[tuple[int, int]]] = {}
+    found: dict[tuple[str, str, int], dict[int, int]] = {}
     with closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True)) as database:
         for protocol in ("extension of reach", "tool adaptation"):
             for tool, goal, robot, solved in database.execute(SOLVED, (protocol,)):
-                found.setdefault((protocol, tool, goal), []).append((robot, solved))
-    return {cell: np.array([s for _, s in sorted(pairs)], float) for cell, pairs in found.items()}
+                found.setdefault((protocol, tool, goal), {})[robot] = solved
+    return found
+
+
+def robots_of(found: dict[tuple[str, str, int], dict[int, int]]) -> set[int]:
+    """Return the robots that have successes in every cell."""
+    return set.intersection(*map(set, found.values())) if found else set()
 
 
 def interval(differences: NDArray[np.float64] | float) -> tuple[float, float, float]:

@@ -224,12 +224,15 @@ BAD_OPTIONS: dict[str, tuple[tuple[str, ...], str]] = {
     "too many markers": (("--markers", "99x99"), "--markers 99x99: must be columns x rows"),
     "markers of 10 kB": (("--markers", "9" * 10_000), "--markers 999"),
     "other markers": (("--markers", "6x5"), "pattern.png: 36 markers found instead of 30"),
-    "no spacing": (("--spacing", "0"), "--spacing 0.0: must be more than 0"),
+    "no spacing": (("--spacing", "0"), "--spacing 0.0: must lie in 0.001 to 10000"),
     "spacing no number": (("--spacing", "nan"), "--spacing nan: must "),
-    "negative spacing": (("--spacing", "-1"), "--spacing -1.0: must be more than 0"),
+    "negative spacing": (("--spacing", "-1"), "--spacing -1.0: must lie in 0.001 to 10000"),
     "infinite spacing": (("--spacing", "inf"), "--spacing inf: must "),
     "turned between": (("--turn", "45"), "--turn 45: must be one of 0, 90, 180, 270"),
-    "one coordinate": (("--origin", "1"), "--origin 1: must be 2 numbers with commas between"),
+    "one coordinate": (
+        ("--origin", "1"),
+        "--origin 1: must be 2 numbers within 10000, with commas between",
+    ),
     "three coordinates": (("--origin", "1,2,3"), "--origin 1,2,3: must be 2 numbers"),
     "coordinate no number": (("--origin", "nan,0"), "--origin nan,0: must be 2 "),
     "coordinates in words": (("--origin", "here,\x1b[31m"), "--origin here,\\x1b[31m: must be 2"),
@@ -238,7 +241,7 @@ BAD_OPTIONS: dict[str, tuple[tuple[str, ...], str]] = {
     "colour too bright": (("--marker-color", "300,0,0"), "300,0,0: each must lie in 0 to 255"),
     "grey colour": (("--marker-color", "128,128,128"), "too grey or too dark"),
     "dark colour": (("--marker-color", "#100000"), "too grey or too dark"),
-    "no sensor": (("--sensor-width", "0"), "--sensor-width 0.0: must be more than 0"),
+    "no sensor": (("--sensor-width", "0"), "--sensor-width 0.0: must lie in 0.001 to 10000"),
     "seed": (("--seed", "-1"), "--seed -1: must lie in 0 to 2^63 - 1"),
     "missing settings": (("--config", "none.toml"), "none.toml"),
     "into no folder": (("--out", "none/cal.json"), "none/cal.json: its folder does not exist"),
@@ -390,3 +393,14 @@ def test_without_opencv_nothing_else_is_missed(shared: Path, tmp_path: Path) -> 
     assert ended.code == 0
     assert "what the stick affords" in ended.out
     assert rows(database, "SELECT status, calibration FROM learning_run") == [("done", None)]
+
+
+@pytest.mark.parametrize("package", ["cv2", "scipy"])
+@pytest.mark.parametrize("command", [("solve", "--goal", "2"), ("break-tool",)])
+def test_without_its_packages_no_trial_through_the_camera_is_begun(
+    package: str, command: tuple[str, ...], learned: Path
+) -> None:
+    before = rows(learned, "SELECT count(*) FROM session")
+    ended = without(package, *command, "--sensor", "camera", "--db", learned)
+    assert ended == Ended(2, "", f"{INSTALL}\n")
+    assert rows(learned, "SELECT count(*) FROM session") == before

@@ -134,10 +134,16 @@ NOT_A_PICTURE: dict[str, tuple[Callable[[Picture], bytes], str]] = {
     "20 bytes of a PNG": (lambda p: png(p)[:20], "; give a PNG or JPEG picture"),
     "half a JPEG": (lambda p: saved(p, "JPEG")[:9000], "truncated"),
     "300 bytes of a JPEG": (lambda p: saved(p, "JPEG")[:300], "; give a PNG or JPEG picture"),
-    "a bomb": (lambda _: claiming(20_000, 20_000), "my.png: "),
+    "a bomb": (lambda _: claiming(20_000, 20_000), "my.png: too many pixels; make it"),
     "the largest bomb": (lambda _: claiming(2**31 - 1, 2**31 - 1), "my.png: "),
-    "more than is read": (lambda _: claiming(6000, 5000), "6000x5000 pixels are too many; make it"),
-    "huge": (lambda _: plain(9, 12_000, 9000), "12000x9000 pixels are too many; make it smaller"),
+    "more than is read": (
+        lambda _: claiming(6000, 5000),
+        "6000x5000 pixels: too many pixels; make it",
+    ),
+    "huge": (
+        lambda _: plain(9, 12_000, 9000),
+        "12000x9000 pixels: too many pixels; make it smaller",
+    ),
     "nothing": (lambda _: claiming(0, 0), "my.png: "),
     "8 by 8": (lambda p: png(p[:8, :8]), "8x8 pixels are too few; give a picture of at least 32"),
 }
@@ -149,7 +155,8 @@ NO_PATTERN: dict[str, tuple[Callable[[Picture], bytes], str]] = {
     "all red": (lambda p: png(np.full_like(p, RED)), "no markers found"),
     "over-exposed": (lambda p: png(brighter(p, 200)), "white, it is over-exposed"),
     "8 bits of grey": (lambda p: png(p[:, :, 1]), "no markers found"),
-    "16 bits of grey": (lambda p: png(p[:, :, 1].astype(np.uint16) * 257), "no markers found"),
+    "16 bits of grey": (lambda p: png(p[:, :, 1].astype(np.uint16) * 257), "found: paint them"),
+    "16 bits of white": (lambda p: png(np.full(p.shape[:2], 65535, np.uint16)), "is over-exposed"),
     "black and white": (lambda p: saved(p, "PNG", "1"), "no markers found"),
     "a row cut in half": (lambda p: png(p[first_row(p) :]), "is cut off by the edge of the pict"),
 }
@@ -163,11 +170,20 @@ AS_GOOD: dict[str, Callable[[Picture], bytes]] = {
 }
 """The same pixels in another file."""
 
+
+def senseless() -> bytes:
+    """Return notes about a picture (EXIF) in which its description is a number."""
+    # Little-endian TIFF; one entry: ImageDescription (0x10E) of the type double, at byte 26.
+    return b"Exif\0\0II*\0\x08\0\0\0\x01\0" + struct.pack("<HHII", 0x10E, 12, 1, 26) + bytes(12)
+
+
 NEARLY_AS_GOOD: dict[str, Callable[[Picture], bytes]] = {
     "JPEG": lambda p: saved(p, "JPEG", quality=95),
     "progressive JPEG": lambda p: saved(p, "JPEG", quality=95, progressive=True),
     "for printing": lambda p: saved(p, "JPEG", "CMYK", quality=95),
     "a palette": lambda p: saved(p, "PNG", "P"),
+    "a transparent palette": lambda p: saved(p, "PNG", "P", transparency=bytes(range(256))),
+    "notes that make no sense": lambda p: saved(p, "JPEG", quality=95, exif=senseless()),
     "brighter": lambda p: png(brighter(p, 30)),
 }
 

@@ -1,7 +1,9 @@
 """``affcli camera view``: pictures and videos of what is stored, and what cannot be shown."""
 
 import math
+import shlex
 import sqlite3
+import subprocess
 from collections.abc import Sequence
 from contextlib import closing
 from pathlib import Path
@@ -11,7 +13,17 @@ import cv2
 import pytest
 
 from affcli.perception.rendering import Picture
-from tests.cli.program import Arg, done, names_in, refused, rows
+from tests.cli.program import (
+    PROGRAM,
+    ROOT,
+    Arg,
+    done,
+    environment,
+    names_in,
+    one_printable_line,
+    refused,
+    rows,
+)
 
 MOVED = ", ".join(
     f"{what}_{axis}"
@@ -208,12 +220,10 @@ USAGE: dict[str, tuple[tuple[str, ...], str]] = {
     "run and trial": (("--run", "1", "--trial", "1", "--out", "v.png"), "give one of --trial, "),
     "trial in words": (("--trial", "first", "--out", "v.png"), "'--trial'"),
     "unknown trial": (("--trial", "99", "--out", "v.png"), "no trial 99; they are numbered 1 to "),
-    "trial 0": (("--trial", "0", "--video", "v.avi"), "no trial 0; they are numbered 1 to "),
     "unknown step": (
         ("--trial", "1", "--step", "99", "--out", "v.png"),
         "no step 99 in trial 1; it has steps 1 to ",
     ),
-    "step 0": (("--trial", "1", "--step", "0", "--out", "v.png"), "no step 0 in trial 1; it has "),
     "unknown run": (
         ("--run", "3", "--out", "v.png"),
         "no learning run 3; they are numbered 1 to 2",
@@ -225,9 +235,9 @@ USAGE: dict[str, tuple[tuple[str, ...], str]] = {
 }
 
 PLACES: dict[str, tuple[tuple[str, ...], str]] = {
-    "a JPEG": (("--out", "v.jpg"), "v.jpg: name a picture *.png"),
-    "no ending": (("--out", "v"), "v: name a picture *.png"),
-    "a GIF of a step": (("--trial", "1", "--video", "v.gif"), "v.gif: name a video *.mp4 or *.avi"),
+    "a JPEG": (("--out", "v.jpg"), "v.jpg: name it *.png"),
+    "no ending": (("--out", "v"), "v: name it *.png"),
+    "a GIF of a step": (("--trial", "1", "--video", "v.gif"), "v.gif: name it *.mp4 or *.avi"),
     "over a picture": (
         ("--out", "mine.png"),
         "mine.png: exists already; name another file",
@@ -248,7 +258,7 @@ PLACES: dict[str, tuple[tuple[str, ...], str]] = {
     ),
     "over a folder": (("--out", "folder.png", "--force"), "folder.png: not a file; name another"),
     "10 kB": (("--out", "x" * 10_000 + ".png"), "File name too long"),
-    "escape sequence": (("--out", "\x1b[31mred"), "\\x1b[31mred: name a picture *.png"),
+    "escape sequence": (("--out", "\x1b[31mred"), "\\x1b[31mred: name it *.png"),
     "seed": (("--out", "v.png", "--seed", "-1"), "--seed -1: must lie in 0 to 2^63 - 1"),
     "missing settings": (("--out", "v.png", "--config", "none.toml"), "config none.toml: No such"),
 }
@@ -316,3 +326,39 @@ def test_a_call_that_affcli_did_not_write_is_named(used: Path) -> None:
         driver.execute("UPDATE affordance SET exploratory_params = 'far'")
     line = refused(3, "camera", "view", "--trial", "1", "--out", "v.png", "--db", used)
     assert "holds a value that affcli did not write; restore a copy of the database" in line
+
+
+@pytest.mark.parametrize("ending", [".mp4", ".avi"])
+def test_on_a_full_disk_no_video_is_left_and_none_is_promised(
+    ending: str, used: Path, tmp_path: Path
+) -> None:
+    """OpenCV itself says nothing of it."""
+    before = names_in(tmp_path)
+    program = shlex.join([*PROGRAM, "camera", "view", "--db", str(used), "--trial", "1", "--video"])
+    ended = subprocess.run(
+        ["/bin/sh", "-c", f"ulimit -f 40; {program} full{ending}"],
+        cwd=tmp_path,
+        env=environment(PYTHONPATH=str(ROOT)),
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert ended.returncode == 4
+    assert one_printable_line(ended.stderr).startswith("affcli: ")
+    assert "make room" in ended.stderr
+    assert names_in(tmp_path) == before
+
+
+@pytest.mark.parametrize("option", ["--trial", "--run", "--step"])
+@pytest.mark.parametrize("number", ["0", "-1", "-9223372036854775808", "9223372036854775808"])
+def test_numbers_that_no_record_has_are_bad_input(option: str, number: str, used: Path) -> None:
+    trial = () if option != "--step" else ("--trial", "1")
+    line = refused(4, "camera", "view", "--db", used, "--out", "x.png", *trial, option, number)
+    assert f"{option} {number}: must lie in 1 to 9223372036854775807" in line
+
+
+def test_a_stored_step_has_its_own_seed_and_settings(used: Path, tmp_path: Path) -> None:
+    for own in (("--seed", "3"), ("--config", tmp_path / "x.toml")):
+        line = refused(2, "camera", "view", "--db", used, "--trial", "1", "--out", "x.png", *own)
+        assert "leave out --seed and --config" in line

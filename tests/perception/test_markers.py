@@ -79,6 +79,14 @@ def test_points_that_form_no_grid_are_refused() -> None:
         ordered(line, PATTERN)
 
 
+def test_hundreds_of_points_of_which_none_is_a_corner_are_refused_at_once() -> None:
+    """Not tried four by four: there are a thousand million ways to take four of them."""
+    angles = np.arange(400) * 2.0 * np.pi / 400
+    ring = 200.0 + 150.0 * np.column_stack([np.cos(angles), np.sin(angles)])
+    with pytest.raises(BadInputError, match="no grid of 20x20"):
+        ordered(ring, Pattern(20, 20))
+
+
 @pytest.mark.parametrize("color", [None, MARKER_COLOR])
 def test_the_markers_are_found_to_a_tenth_of_a_pixel(color: Color | None) -> None:
     found = find_markers(picture(), TABLE_PATTERN, color)
