@@ -9,7 +9,7 @@ from affcli.cli.options import (
     AsJson,
     Database,
     Seed,
-    Sensor,
+    TrialSensor,
     checked_seed,
     checked_sensor,
     checked_tool,
@@ -28,7 +28,7 @@ def break_tool(
         str, typer.Option("--becomes", help="The shape that is left.", metavar="NAME")
     ] = "l-hook",
     seed: Seed = 0,
-    sensor: Sensor = None,
+    sensor: TrialSensor = None,
     database: Database = DEFAULT_DATABASE,
     as_json: AsJson = False,
 ) -> None:
@@ -58,6 +58,6 @@ def break_tool(
                 bar.update(len(trials), f"{len(trials)} of 32 trials")
     side = missing_side(settings_from_json(run.spec.settings), tool, becomes)
     if as_json:
-        show_json(broken_json(becomes, side, trials))
+        show_json({"run": run.id, **broken_json(becomes, side, trials)})
     else:
         show(*broken_tables(becomes, side, trials))

@@ -22,13 +22,15 @@ def locate(
     ],
     colors: Annotated[
         Path | None,
-        typer.Option("--colors", help="A TOML file of colours.", metavar="FILE", readable=False),
+        typer.Option("--colors", help="TOML: [name], rgb, height.", metavar="FILE", readable=False),
     ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Say where a picture shows what is colour-coded.
 
-    Without --colors the colours of the simulated table are looked for.
+    Without --colors the colours of the simulated table are looked for. In such a file a section
+    [cup] with rgb = [30, 110, 200] looks for that colour; height, 0 if not given, is how high over
+    the table the middle of what is seen lies (inches).
     """
     from affcli.lab.photographs import locate_in_picture
     from affcli.report.camera import places_json, places_table

@@ -63,7 +63,9 @@ def view(
     the table as a trial begins.
     """
     checked_seed(seed)
-    _check_what(trial, run, step, after=after, pattern=pattern, video=video, own=(seed, config))
+    _check_what(
+        trial, run, step, after=after, pattern=pattern, video=video, out=out, own=(seed, config)
+    )
     _check_where(out, video, force=force)
 
     from affcli.config import load_settings
@@ -93,6 +95,7 @@ def _check_what(
     after: bool,
     pattern: bool,
     video: Path | None,
+    out: Path | None,
     own: tuple[int, Path | None],
 ) -> None:
     """Refuse options that do not go together: nothing that is asked for is ignored."""
@@ -103,6 +106,8 @@ def _check_what(
         raise UsageError(
             "--trial and --run have a seed and settings: leave out --seed and --config"
         )
+    if after and out is None:
+        raise UsageError("--after is for a picture: give --out FILE.png; a video shows all of it")
     if not stored and video is not None:
         raise UsageError("a video of what? give --trial ID or --run ID, and --step N")
     if not stored and (after or step != 1):

@@ -41,9 +41,11 @@ Config = Annotated[
 Force = Annotated[bool, typer.Option("--force", help="Write over existing files.")]
 Sensor = Annotated[
     str | None,
-    typer.Option(
-        "--sensor", help="noisy, exact or camera; else as set, or learned.", metavar="KIND"
-    ),
+    typer.Option("--sensor", help="noisy (the default), exact or camera.", metavar="KIND"),
+]
+TrialSensor = Annotated[
+    str | None,
+    typer.Option("--sensor", help="noisy, exact or camera; else that of learning.", metavar="KIND"),
 ]
 
 

@@ -9,7 +9,7 @@ from affcli.cli.options import (
     AsJson,
     Database,
     Seed,
-    Sensor,
+    TrialSensor,
     checked_goal,
     checked_seed,
     checked_sensor,
@@ -42,7 +42,7 @@ def solve(
     ] = None,
     start: Annotated[str, typer.Option("--start", help="1 to 4, or all.", metavar="N")] = "all",
     seed: Seed = 0,
-    sensor: Sensor = None,
+    sensor: TrialSensor = None,
     explain: Annotated[
         bool, typer.Option("--explain", help="Say step by step why each row was chosen.")
     ] = False,
@@ -89,12 +89,17 @@ def solve(
     if as_json:
         show_json(
             [
-                _as_json(trial, taken, regions[trial.trial.tool] if explain else None)
+                {
+                    "run": next(run.id for run in runs if run.spec.tool == trial.trial.tool),
+                    "sensor": trial.trial.sensor,
+                    **_as_json(trial, taken, regions[trial.trial.tool] if explain else None),
+                }
                 for trial, taken in zip(trials, steps[:-1], strict=True)
             ]
         )
     else:
-        show(solve_table(goal, [(t.trial, t.end) for t in trials]))
+        used = {run.spec.tool: run.id for run in runs}
+        show(solve_table(goal, [(t.trial, t.end) for t in trials], used))
     return 0 if len(starts) > 1 or all(t.solved for t in trials) else 1
 
 

@@ -40,16 +40,17 @@ def overview_of(store: Store) -> Overview:
         (run, differences(run.spec.settings), store.behavior_groups(run.id))
         for run in store.learning_runs()
     ]
-    solved: dict[tuple[int, str, int], tuple[int, int]] = {}
+    solved: dict[tuple[int, str, str, int], tuple[int, int]] = {}
     for trial in store.outcomes(kind="solve"):
-        key = (trial.run_id, trial.tool, trial.goal)
+        key = (trial.run_id, trial.tool, trial.sensor, trial.goal)
         good, tried = solved.get(key, (0, 0))
         solved[key] = (good + (trial.outcome is Outcome.SOLVED), tried + 1)
-    latest: dict[tuple[int, int, str, str], Breaking] = {}
+    latest: dict[tuple[int, int, str, str, str], Breaking] = {}
     for session in store.sessions("break-tool"):
         breaking = _breaking(store, session)
         if breaking is not None:
-            latest[breaking.run, breaking.seed, breaking.tool, breaking.shape] = breaking
+            of = (breaking.tool, breaking.shape, breaking.sensor)
+            latest[breaking.run, breaking.seed, *of] = breaking
     counted = [s.id for s in store.sessions("solve")] + [b.session for b in latest.values()]
     failures, trials = _failures(store, counted)
     reproductions = [
@@ -94,6 +95,7 @@ def _breaking(store: Store, session: SessionInfo) -> Breaking | None:
         session.seed,
         broken.tool,
         broken.shape,
+        broken.sensor,
         figures[Protocol.TOOL_ADAPTATION],
         figures[Protocol.EXTENSION_OF_REACH],
     )

@@ -90,6 +90,12 @@ def locate_in_picture(
             f"{one_line(calibration)}: not a calibration ({one_line(error)}); make one with "
             "`affcli camera calibrate PICTURE --out FILE`"
         ) from error
+    above = [one.name for one in classes if one.height >= camera.position[2]]
+    if colors is not None and above:
+        raise BadInputError(
+            f"colors: {one_line(above[0], 40)}.height lies above the camera, which is "
+            f"{camera.position[2]:.1f} in over the table; give inches over the table"
+        )
     picture = read_picture(path)
     height, width = picture.shape[:2]
     size = (camera.sensor.width_px, camera.sensor.height_px)
@@ -103,7 +109,8 @@ def locate_in_picture(
     if not any(places.values()):
         names = ", ".join(one_line(name, 40) for name in places)
         raise BadInputError(
-            f"{one_line(path)}: none of the colours is seen ({names}); name yours with --colors"
+            f"{one_line(path)}: none of the colours is seen ({names}); uncover it, or give "
+            "its colour as it looks in the picture (--colors)"
         )
     return places
 

@@ -52,16 +52,19 @@ def segmentation_picture(seen: Segmentation) -> Picture:
     for one, blobs in zip(seen.classes, seen.blobs, strict=True):
         if not blobs:
             continue
-        first = blobs[0]
-        place = (round(first.x) + 9, round(first.y) - 7)
-        if one.role is Role.TOOL:
-            # Of a tool only the colour is used: no centroid.
-            place = (first.left, first.top - 8)
-        else:
-            # A goal that something lies across is seen in several pieces.
-            for blob in blobs:
-                _cross(picture, blob.x, blob.y, LONG_ARM if blob.area > LARGE_BLOB else SHORT_ARM)
-        _write(picture, one_line(one.name, 30), place, 0.42, WHITE, outline=(0, 0, 0))
+        left = min(blob.left for blob in blobs)
+        bottom = max(blob.top + blob.height for blob in blobs)
+        # Of a tool only the colour is used: no centroid.
+        if one.role is not Role.TOOL:
+            # A goal that something lies across is seen in pieces; their centroid is one.
+            area = sum(blob.area for blob in blobs)
+            x = sum(blob.x * blob.area for blob in blobs) / area
+            y = sum(blob.y * blob.area for blob in blobs) / area
+            each = [(x, y)] if one.role is Role.GOAL else [(blob.x, blob.y) for blob in blobs]
+            arm = LONG_ARM if area > LARGE_BLOB * len(blobs) else SHORT_ARM
+            for center in each:
+                _cross(picture, *center, arm)
+        _write(picture, one_line(one.name, 30), (left, bottom + 14), 0.42, WHITE, outline=(0, 0, 0))
     return picture
 
 

@@ -99,7 +99,11 @@ def dead_rows(broken: Sequence[TrialRecord], missing_side: float) -> list[DeadRo
 def broken_json(shape: str, missing_side: float, trials: Sequence[TrialRecord]) -> dict[str, Any]:
     """Return what `broken_tables` shows as JSON types."""
     broken, whole = broken_and_whole(shape, trials)
-    value: dict[str, Any] = {"becomes": shape, "paper": BROKEN_TOOL}
+    value: dict[str, Any] = {
+        "becomes": shape,
+        "sensor": trials[0].spec.sensor,
+        "paper": BROKEN_TOOL,
+    }
     for name, some in (("broken", broken), ("whole", whole)):
         tally = Tally.of(some)
         value[name] = {
@@ -134,6 +138,7 @@ def broken_tables(
         ("16 trials each", f"broken: {shape}", "whole"),
         title="The broken tool beside the whole one",
         left=("16 trials each",),
+        caption=f"seen through: {trials[0].spec.sensor}",
     )
     for label, left, right in zip(
         _LABELS, _figures(Tally.of(broken)), _figures(Tally.of(whole)), strict=True

@@ -69,7 +69,7 @@ def calibration_tables(
     left = Sheet(
         ("y (in)", *(f"x {marker['x_in']:g}" for marker in markers[:columns])),
         title="What is left at each marker (px)",
-        caption="rows from far to near, as one sees the table from the robot",
+        caption="by their place on the table",
     )
     rows = [markers[i : i + columns] for i in range(0, len(markers), columns)]
     for row in reversed(rows):

@@ -53,6 +53,7 @@ class Breaking:
     seed: int
     tool: str
     shape: str
+    sensor: str
     broken: ProtocolFigures
     whole: ProtocolFigures
 
@@ -64,7 +65,7 @@ class Overview:
     Args:
         learned: learning runs that stand for themselves, each with how its settings differ from the
             defaults, and its behavior groups.
-        solved: (solved, tried) by (learning run, tool, goal), over all ``solve`` sessions.
+        solved: (solved, tried) by (learning run, tool, sensor, goal), over all ``solve`` sessions.
         breakings: the ``break-tool`` sessions, oldest first; of the same one done again, the last.
         failures: how often each kind of failure occurred in these sessions.
         trials: all trials of these sessions.
@@ -72,7 +73,7 @@ class Overview:
     """
 
     learned: Sequence[tuple[LearnedTool, str, Sequence[BehaviorGroup]]]
-    solved: Mapping[tuple[int, str, int], tuple[int, int]]
+    solved: Mapping[tuple[int, str, str, int], tuple[int, int]]
     breakings: Sequence[Breaking]
     failures: Mapping[str, int]
     trials: int
@@ -101,16 +102,17 @@ def overview_tables(overview: Overview) -> list[RenderableType]:
 def _breakings_table(breakings: Sequence[Breaking]) -> Sheet:
     """Return the broken-tool sessions beside the paper."""
     table = Sheet(
-        ("run", "tool", "became", "broken", "whole", "tries on lost", "rows excluded"),
+        ("run", "tool", "became", "sensor", "broken", "whole", "tries on lost", "excluded"),
         title="Tools that broke",
         caption=f"solved (mean steps of the solved); paper: {BROKEN_TOOL} of 16 both",
-        left=("tool", "became"),
+        left=("tool", "became", "sensor"),
     )
     for breaking in breakings:
         table.add(
             str(breaking.run),
             breaking.tool,
             breaking.shape,
+            breaking.sensor,
             _solved(breaking.broken),
             _solved(breaking.whole),
             str(breaking.broken.tries_on_lost),
@@ -133,8 +135,15 @@ def overview_json(overview: Overview) -> dict[str, Any]:
             for run, settings, groups in overview.learned
         ],
         "solved": [
-            {"run": run, "tool": tool, "goal": goal, "solved": solved, "tried": tried}
-            for (run, tool, goal), (solved, tried) in overview.solved.items()
+            {
+                "run": run,
+                "tool": tool,
+                "sensor": sensor,
+                "goal": goal,
+                "solved": solved,
+                "tried": tried,
+            }
+            for (run, tool, sensor, goal), (solved, tried) in overview.solved.items()
         ],
         "broken": [asdict(breaking) for breaking in overview.breakings],
         "failures": dict(overview.failures),

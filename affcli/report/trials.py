@@ -90,14 +90,24 @@ def _movement(movement: Movement) -> str:
     return f"{movement.distance:.1f} in at {direction} deg"
 
 
-def solve_table(goal: int, ends: Sequence[tuple[TrialSpec, TrialEnd]]) -> Sheet:
-    """Return the trials of one goal: a row a tool, a column a start."""
+def solve_table(
+    goal: int, ends: Sequence[tuple[TrialSpec, TrialEnd]], runs: Mapping[str, int]
+) -> Sheet:
+    """Return the trials of one goal: a row a tool, a column a start.
+
+    Args:
+        goal: 1 to 4.
+        ends: the trials.
+        runs: the learning run whose table was used, by tool; named with the sensor.
+    """
     starts = sorted({spec.start for spec, _ in ends})
     columns = [f"start {start}" for start in starts]
+    sensors = {spec.tool: spec.sensor for spec, _ in ends}
+    used = ", ".join(f"run {runs[tool]} ({sensor})" for tool, sensor in sensors.items())
     table = Sheet(
         ("tool", *columns, "solved", "paper"),
         title=f"Goal {goal}: outcome (steps) by start",
-        caption="counters of the rows used were updated in the stored table",
+        caption=f"{used}; counters of the rows used were updated in the stored table",
         left=("tool", *columns),
     )
     for tool in dict.fromkeys(spec.tool for spec, _ in ends):
@@ -109,24 +119,24 @@ def solve_table(goal: int, ends: Sequence[tuple[TrialSpec, TrialEnd]]) -> Sheet:
     return table
 
 
-def counts_table(solved: Mapping[tuple[int, str, int], tuple[int, int]]) -> Sheet:
+def counts_table(solved: Mapping[tuple[int, str, str, int], tuple[int, int]]) -> Sheet:
     """Return successes of single robots by learning run and goal beside the paper's.
 
     Args:
-        solved: (solved, tried) by (learning run, tool, goal).
+        solved: (solved, tried) by (learning run, tool, sensor, goal).
     """
     table = Sheet(
-        ("run", "tool", "goal 1", "goal 2", "goal 3", "goal 4"),
+        ("run", "tool", "sensor", "goal 1", "goal 2", "goal 3", "goal 4"),
         title="Extension of reach, by learning run",
         caption="solved/tried|the paper's successes of 4",
-        left=("tool",),
+        left=("tool", "sensor"),
     )
-    for run, tool in dict.fromkeys((run, tool) for run, tool, _ in solved):
+    for run, tool, sensor in dict.fromkeys(key[:3] for key in solved):
         paper = EXTENSION_OF_REACH.get(tool, (None,) * 4)
         cells = []
         for goal in (1, 2, 3, 4):
-            good, tried = solved.get((run, tool, goal), (0, 0))
+            good, tried = solved.get((run, tool, sensor, goal), (0, 0))
             beside = "-" if paper[goal - 1] is None else str(paper[goal - 1])
             cells.append(f"{good}/{tried}|{beside}" if tried else f"-|{beside}")
-        table.add(str(run), tool, *cells)
+        table.add(str(run), tool, sensor, *cells)
     return table

@@ -69,7 +69,7 @@ def _sqlite(version: tuple[int, ...]) -> Fact:
         return Fact("SQLite", "ok", f"{shown}; writers use a write-ahead log")
     return Fact(
         *("SQLite", "ok"),
-        f"{shown}; its write-ahead log can corrupt a file two write, so affcli does not use it",
+        f"{shown}; affcli keeps a rollback journal with it, not a write-ahead log",
     )
 
 

@@ -45,6 +45,7 @@ class TrialResult:
         session_kind, session_id: the command it is part of.
         run_id: the learning run whose table it used.
         robot, protocol, tool, shape, goal, start: which trial.
+        sensor: through what the robot saw.
         outcome: how it ended.
         steps: how many steps it took.
         robot_seconds: how long it took.
@@ -60,6 +61,7 @@ class TrialResult:
     shape: str
     goal: int
     start: int
+    sensor: str
     outcome: Outcome
     steps: int
     robot_seconds: float
@@ -201,7 +203,7 @@ class Results(Connected):
             tool: only those of this tool.
         """
         t, s = trial.c, session.c
-        which = (t.session_id, t.robot, t.protocol, t.tool, t.shape, t.goal, t.start)
+        which = (t.session_id, t.robot, t.protocol, t.tool, t.shape, t.goal, t.start, t.sensor)
         ending = (t.outcome, t.steps, t.robot_seconds)
         run, of = t.learning_run_id.label("run_id"), s.kind.label("session_kind")
         wanted = (

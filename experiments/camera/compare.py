@@ -8,6 +8,7 @@ second, with its 95 % interval (normal, over robots).
 """
 
 import argparse
+import csv
 import json
 import math
 import sqlite3
@@ -34,11 +35,14 @@ def main() -> None:
     parser.add_argument("first", type=Path)
     parser.add_argument("second", type=Path)
     parser.add_argument("--json", type=Path, help="write the figures there too")
+    parser.add_argument("--pairs", type=Path, help="write each robot's successes there, as CSV")
     args = parser.parse_args()
     first, second = successes(args.first), successes(args.second)
     robots = robots_of(first) & robots_of(second)
-    if first.keys() != second.keys() or not robots:
-        parser.error("the two databases hold no robots with the same tools and goals in common")
+    if first.keys() != second.keys() or len(robots) < 2:
+        parser.error(
+            "the two databases must have two robots or more in common, and all their trials"
+        )
     differences = {
         cell: np.array(
             [first[cell][robot] - second[cell][robot] for robot in sorted(robots)], float
@@ -53,11 +57,11 @@ def main() -> None:
         if protocol == "extension of reach":
             inside = low >= -CELL_BAR and high <= CELL_BAR
             print(
-                f"{tool:8} goal {goal}: {mean:+.2f} ({low:+.2f} to {high:+.2f})"
+                f"{tool:8} goal {goal}: {mean:+.3f} ({low:+.3f} to {high:+.3f})"
                 + ("" if inside else f"  NOT within +-{CELL_BAR}")
             )
     for name, (mean, low, high) in (("total of 80", total), ("broken, of 16", broken)):
-        print(f"{name}: {mean:+.2f} ({low:+.2f} to {high:+.2f})")
+        print(f"{name}: {mean:+.3f} ({low:+.3f} to {high:+.3f})")
     cells = {f"{tool}, goal {goal}": rows[p, tool, goal] for p, tool, goal in paper}
     result: dict[str, Any] = {
         "robots": len(robots),
@@ -68,6 +72,8 @@ def main() -> None:
         and all(abs(x) <= TOTAL_BAR for x in total[1:]),
     }
     print(f"{result['robots']} robots; all within the bars: {result['all_within_bars']}")
+    if args.pairs:
+        write_pairs(args.pairs, first, second, sorted(robots))
     if args.json:
         args.json.write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
 
@@ -85,6 +91,23 @@ def successes(path: Path) -> dict[tuple[str, str, int], dict[int, int]]:
 def robots_of(found: dict[tuple[str, str, int], dict[int, int]]) -> set[int]:
     """Return the robots that have successes in every cell."""
     return set.intersection(*map(set, found.values())) if found else set()
+
+
+def write_pairs(
+    path: Path,
+    first: dict[tuple[str, str, int], dict[int, int]],
+    second: dict[tuple[str, str, int], dict[int, int]],
+    robots: list[int],
+) -> None:
+    """Write the successes of each robot in each cell, in both databases."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(("protocol", "tool", "goal", "robot", "first", "second"))
+        for protocol, tool, goal in first:
+            cell = (protocol, tool, goal)
+            rows.writerows(
+                (*cell, robot, first[cell][robot], second[cell][robot]) for robot in robots
+            )
 
 
 def interval(differences: NDArray[np.float64] | float) -> tuple[float, float, float]:

@@ -148,7 +148,7 @@ BAD_COLORS = {
     ),
     "grey": (b"[a]\nrgb = [128, 130, 128]", "a (128, 130, 128) is too grey or too dark"),
     "dark": (b"[a]\nrgb = [40, 0, 0]", "a (40, 0, 0) is too grey or too dark"),
-    "not seen": (b"[moon]\nrgb = [240, 240, 20]", "none of the colours is seen (moon); name yours"),
+    "not seen": (b"[moon]\nrgb = [240, 240, 20]", "none of the colours is seen (moon); uncover it"),
     "escape sequence": (b'["\\u001b[31mred"]\nrgb = [0, 0, 0]', "\\x1b[31mred (0, 0, 0) is too"),
     "10 kB name": (b"[" + b"x" * 10_000 + b"]\nrgb = [0, 0, 0]", "is too grey or too dark"),
 }
@@ -167,3 +167,10 @@ def test_colors_that_cannot_be_read_are_named(folder: Path) -> None:
         line = refused(4, "camera", "locate", "table.png", *args, cwd=folder)
         assert line.startswith(f"affcli: colors {path}: ")
         assert line.endswith("; give a TOML file that can be read")
+
+
+def test_a_height_above_the_camera_is_named(folder: Path) -> None:
+    (folder / "my.toml").write_text("[cup]\nrgb = [240, 120, 20]\nheight = 60.0\n")
+    args = ("--calibration", "cal.json", "--colors", "my.toml")
+    line = refused(4, "camera", "locate", "table.png", *args, cwd=folder)
+    assert "cup.height lies above the camera, which is 52.0 in over the table" in line

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from affcli.store.identity import REVISION
 from tests.cli.program import done, names_in, refused, rows
 
 READING = {
@@ -81,7 +82,7 @@ SPOILT: dict[Callable[[Path], None], str] = {
     not_a_database: "not a SQLite database; name another file with --db",
     truncated: "damaged; restore a copy of the file",
     of_another_program: "of another program; name another file with --db",
-    from_the_future: "its schema is at revision 0099, this affcli knows 0001: install a newer",
+    from_the_future: f"at revision 0099, this affcli knows {REVISION}: install a newer",
 }
 
 
@@ -110,7 +111,7 @@ def test_every_other_command_refuses_another_programs_file(name: str, learned: P
 def test_db_info_says_which_revision_a_newer_file_has(learned: Path) -> None:
     from_the_future(learned)
     info = done("db", "info", "--json", "--db", learned).json
-    assert (info["revision"], info["code_revision"]) == ("0099", "0001")
+    assert (info["revision"], info["code_revision"]) == ("0099", REVISION)
 
 
 PATHS = {

@@ -78,3 +78,28 @@ def test_reading_changes_nothing(used: Path) -> None:
     done("report", "--json", "--db", used)
     assert used.read_bytes() == before
     assert names_in(used.parent) == [used.name]
+
+
+def test_trials_through_different_sensors_are_told_apart(learned: Path) -> None:
+    """One learned tool, tried through three sensors: nothing is pooled and nothing hidden."""
+    for sensor in ("noisy", "exact", "camera"):
+        done(
+            "solve",
+            "--goal",
+            "3",
+            "--start",
+            "1",
+            "--tool",
+            "stick",
+            "--sensor",
+            sensor,
+            "--db",
+            learned,
+        )
+        done("break-tool", "--sensor", sensor, "--db", learned)
+    overview = done("report", "--json", "--db", learned).json
+    assert [one["sensor"] for one in overview["solved"]] == ["noisy", "exact", "camera"]
+    assert [one["sensor"] for one in overview["broken"]] == ["noisy", "exact", "camera"]
+    assert overview["trials"] == 3 + 3 * 32
+    shown = done("report", "--db", learned).out
+    assert shown.count("camera") == 2

@@ -21,8 +21,10 @@ def test_all_starts_and_all_learned_tools_by_default(learned: Path) -> None:
         (tool, 2, start) for tool in tools for start in (1, 2, 3, 4)
     ]
     for trial in trials:
-        assert trial.keys() == {"tool", "goal", "start", "outcome", "steps", "robot_seconds"}
-    stored = "SELECT tool, goal, start, outcome, steps, robot_seconds FROM trial ORDER BY id"
+        which = {"run", "sensor", "tool", "goal", "start"}
+        assert trial.keys() == {*which, "outcome", "steps", "robot_seconds"}
+    which = "learning_run_id, sensor, tool, goal, start"
+    stored = f"SELECT {which}, outcome, steps, robot_seconds FROM trial ORDER BY id"
     assert [tuple(trial.values()) for trial in trials] == rows(learned, stored)
     assert rows(learned, "SELECT kind, status FROM session") == [("solve", "done")]
 

@@ -192,7 +192,12 @@ OVERVIEW = Overview(
         (RUNS[0], "defaults", GROUPS),
         (RUNS[1], "sensor.position_noise = 0.12", ()),
     ],
-    solved={(1, "t-hook", 1): (3, 4), (1, "t-hook", 4): (12, 16), (2, "stick", 1): (0, 4)},
+    solved={
+        (1, "t-hook", "noisy", 1): (3, 4),
+        (1, "t-hook", "noisy", 4): (12, 16),
+        (1, "t-hook", "camera", 4): (4, 4),
+        (2, "stick", "noisy", 1): (0, 4),
+    },
     breakings=[
         Breaking(
             2,
@@ -200,6 +205,7 @@ OVERVIEW = Overview(
             0,
             "t-hook",
             "l-hook",
+            "camera",
             ProtocolFigures(16, 13, 5.25, 31, 9),
             ProtocolFigures(16, 16, 4.0, 0, 2),
         ),
@@ -209,6 +215,7 @@ OVERVIEW = Overview(
             1,
             "t-stick",
             "stick",
+            "noisy",
             ProtocolFigures(16, 0, None, 16, 4),
             ProtocolFigures(16, 10, 2.0, 0, 0),
         ),

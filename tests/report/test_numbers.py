@@ -89,6 +89,7 @@ def test_overview_json_is_json() -> None:
     assert value["solved"][0] == {
         "run": 1,
         "tool": "t-hook",
+        "sensor": "noisy",
         "goal": 1,
         "solved": 3,
         "tried": 4,

@@ -58,8 +58,8 @@ EXPLAINED = hand_made.trial(
 TABLES: dict[str, tuple[RenderableType, ...]] = {
     "groups": (groups_table(RUNS[0], GROUPS),),
     "learned": (learned_table([(RUNS[0], "defaults"), (RUNS[1], "sensor.position_noise = 0.12")]),),
-    "solve": (solve_table(2, SOLVE),),
-    "solve, one start": (solve_table(3, SOLVE[5:6]),),
+    "solve": (solve_table(2, SOLVE, {"stick": 2, "t-hook": 7}),),
+    "solve, one start": (solve_table(3, SOLVE[5:6], {"stick": 2, "t-hook": 7}),),
     "explain": (
         explain_trial(
             EXPLAINED.spec, EXPLAINED.end, [step.record for step in EXPLAINED.steps], GOAL

@@ -49,7 +49,7 @@ def test_a_write_ahead_log_that_this_sqlite_cannot_be_trusted_with(
     database: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(place_module, "journal_mode_for", lambda version: "delete")
-    assert "so affcli does not use it" in facts(database)["SQLite"].value
+    assert "not a write-ahead log" in facts(database)["SQLite"].value
     info = database_info(database)
     changed = type(info)(**{f: getattr(info, f) for f in info.__slots__} | {"journal_mode": "wal"})
     monkeypatch.setattr(place_module, "database_info", lambda path: changed)
