@@ -23,8 +23,8 @@ def test_all_starts_and_all_learned_tools_by_default(learned: Path) -> None:
     for trial in trials:
         which = {"run", "sensor", "tool", "goal", "start"}
         assert trial.keys() == {*which, "outcome", "steps", "robot_seconds"}
-    which = "learning_run_id, sensor, tool, goal, start"
-    stored = f"SELECT {which}, outcome, steps, robot_seconds FROM trial ORDER BY id"
+    columns = "learning_run_id, sensor, tool, goal, start"
+    stored = f"SELECT {columns}, outcome, steps, robot_seconds FROM trial ORDER BY id"
     assert [tuple(trial.values()) for trial in trials] == rows(learned, stored)
     assert rows(learned, "SELECT kind, status FROM session") == [("solve", "done")]
 
