@@ -269,7 +269,7 @@ def test_a_picture_that_shows_no_color_has_nothing_to_locate(
     (tmp_path / "white.png").write_bytes(plain(255))
     line = refused_soon("locate", "white.png", "--calibration", calibration, cwd=tmp_path)
     assert "none of the colours is seen (puck, wrist, goal, " in line
-    assert line.endswith("; name yours with --colors")
+    assert line.endswith("as it looks in the picture (--colors)")
 
 
 PATHS: dict[str, tuple[Arg, str]] = {
