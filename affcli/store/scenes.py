@@ -142,6 +142,8 @@ def _scene(
     settings, tool, shape, goal, seed, robot = about
     places = [Point(row[i], row[i + 1]) for i in (1, 3, 5, 7)]
     with reading_what_was_written(title):
+        if min(seed, robot) < 0:
+            raise ValueError(f"seed {seed}, robot {robot}")
         return StepScene(
             title,
             key,

@@ -321,11 +321,21 @@ def test_before_any_trial_it_says_that_there_is_none(learned: Path) -> None:
     assert "no trial 1; there are none yet" in refused(2, *show, cwd=learned.parent)
 
 
-def test_a_call_that_affcli_did_not_write_is_named(used: Path) -> None:
+@pytest.mark.parametrize(
+    ("spoilt", "code", "says"),
+    [
+        ("affordance SET exploratory_params = 'far'", 3, "holds a value that affcli did not write"),
+        ("trial SET seed = -1", 3, "holds a value that affcli did not write"),
+        ("trial SET shape = 'spoon'", 3, "holds a tool that affcli does not know"),
+        ("learning_run SET settings = '{'", 4, "the stored settings: "),
+        ("learning_run SET settings = '[]'", 4, "the stored settings: no sections in them"),
+    ],
+)
+def test_what_affcli_did_not_write_is_named(spoilt: str, code: int, says: str, used: Path) -> None:
     with closing(sqlite3.connect(used)) as driver, driver:
-        driver.execute("UPDATE affordance SET exploratory_params = 'far'")
-    line = refused(3, "camera", "view", "--trial", "1", "--out", "v.png", "--db", used)
-    assert "holds a value that affcli did not write; restore a copy of the database" in line
+        driver.execute(f"UPDATE {spoilt}")
+    line = refused(code, "camera", "view", "--trial", "1", "--out", "v.png", "--db", used)
+    assert says in line
 
 
 @pytest.mark.parametrize("ending", [".mp4", ".avi"])
