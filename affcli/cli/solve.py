@@ -86,19 +86,15 @@ def solve(
             steps.append([])
             if explain and not as_json:
                 show(explain_trial(event.trial, event.end, steps[-2], regions[event.trial.tool]))
+    used = {run.spec.tool: run.id for run in runs}
     if as_json:
         show_json(
             [
-                {
-                    "run": next(run.id for run in runs if run.spec.tool == trial.trial.tool),
-                    "sensor": trial.trial.sensor,
-                    **_as_json(trial, taken, regions[trial.trial.tool] if explain else None),
-                }
+                _as_json(used, trial, taken, regions[trial.trial.tool] if explain else None)
                 for trial, taken in zip(trials, steps[:-1], strict=True)
             ]
         )
     else:
-        used = {run.spec.tool: run.id for run in runs}
         show(solve_table(goal, [(t.trial, t.end) for t in trials], used))
     return 0 if len(starts) > 1 or all(t.solved for t in trials) else 1
 
@@ -122,13 +118,18 @@ def learned_runs(store: "Store", tool: str | None, database: "Path") -> list["Le
 
 
 def _as_json(
-    trial: "SolvedTrial", steps: list["StepRecord"], goal: "GoalRegion | None"
+    runs: dict[str, int],
+    trial: "SolvedTrial",
+    steps: list["StepRecord"],
+    goal: "GoalRegion | None",
 ) -> dict[str, Any]:
     """Return one trial as JSON types; with its steps when the goal is given to explain them by."""
     from affcli.report.trials import distances
 
     spec, end = trial.trial, trial.end
     value: dict[str, Any] = {
+        "run": runs[spec.tool],
+        "sensor": spec.sensor,
         "tool": spec.tool,
         "goal": spec.goal,
         "start": spec.start,

@@ -17,15 +17,13 @@ from affcli.errors import BadInputError
 from affcli.perception.camera import Array
 from affcli.perception.palette import (
     CLOSEST_HUES,
-    LEAST_SATURATION,
-    LEAST_VALUE,
     ColorClass,
     Role,
     hue_distance,
     palette,
 )
 from affcli.perception.rendering import Picture
-from affcli.perception.segmentation import Blob, Segmenter, blobs_of
+from affcli.perception.segmentation import Blob, Segmenter, blobs_of, colored_pixels
 
 SMALLEST_MARKER = 8
 """Pixels; a smaller blob is noise."""
@@ -146,10 +144,9 @@ def ordered(points: Array, pattern: Pattern) -> Array:
 
 def _frequent_hues(picture: Picture) -> list[float]:
     """Return the most frequent hues among coloured pixels, degrees."""
-    hsv = cv2.cvtColor(picture, cv2.COLOR_BGR2HSV_FULL)
-    least = (0.0, 255.0 * LEAST_SATURATION, 255.0 * LEAST_VALUE)
-    colored = cv2.inRange(hsv, least, (255.0, 255.0, 255.0))
-    counts = np.bincount(cv2.extractChannel(hsv, 0)[colored > 0], minlength=256).astype(float)
+    hsv = np.asarray(cv2.cvtColor(picture, cv2.COLOR_BGR2HSV_FULL), np.uint8)
+    hues = hsv[:, :, 0][colored_pixels(hsv) > 0]
+    counts = np.bincount(hues, minlength=256).astype(float)
     kernel = np.ones(9)
     smooth = np.convolve(np.concatenate([counts[-4:], counts, counts[:4]]), kernel, "valid")
     peaks: list[int] = []

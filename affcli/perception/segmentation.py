@@ -90,14 +90,23 @@ class Segmenter:
         Args:
             picture: (height, width, 3), 8 bits, blue green red.
         """
-        hsv = cv2.cvtColor(picture, cv2.COLOR_BGR2HSV_FULL)
-        least = (0.0, 255.0 * LEAST_SATURATION, 255.0 * LEAST_VALUE)
-        colored = cv2.inRange(hsv, least, (255.0, 255.0, 255.0))
+        hsv = np.asarray(cv2.cvtColor(picture, cv2.COLOR_BGR2HSV_FULL), np.uint8)
+        colored = colored_pixels(hsv)
         classes = cv2.LUT(cv2.extractChannel(hsv, 0), self._class_of_hue)
         labels = np.asarray(cv2.bitwise_or(classes, cv2.bitwise_not(colored)), np.uint8)
         region = cv2.boundingRect(colored)
         blobs = tuple(blobs_of(labels, k, region) for k in range(len(self.classes)))
         return Segmentation(picture, self.classes, labels, blobs)
+
+
+def colored_pixels(hsv: Picture) -> NDArray[np.uint8]:
+    """Return which pixels have a colour: 255, and 0 for the others.
+
+    Args:
+        hsv: hue, saturation and value, each 0 to 255.
+    """
+    least = (0.0, 255.0 * LEAST_SATURATION, 255.0 * LEAST_VALUE)
+    return np.asarray(cv2.inRange(hsv, least, (255.0, 255.0, 255.0)), np.uint8)
 
 
 def blobs_of(

@@ -13,6 +13,7 @@ import cv2
 import pytest
 from rich.cells import cell_len
 
+from tests.cli.camera_table import AS_IT_LIES, linked, located, photographed, place
 from tests.cli.program import (
     PATIENCE,
     Arg,
@@ -28,8 +29,6 @@ from tests.cli.program import (
 from tests.cli.pseudo_terminal import COLOR, ESCAPE, on_terminal
 from tests.cli.test_read_only import as_nobody
 
-AS_IT_LIES = ("--turn", "180", "--origin", "-12.5,9.2")
-"""How the pattern of the simulated table lies."""
 ON_TABLE = {"puck": (-3.0, 22.4), "goal": (12.4, 22.4), "wrist": (0.0, 14.9)}
 """What lies where as a trial with the T-hook begins (in)."""
 MARKER = {"x_px", "y_px", "x_in", "y_in", "residual_x_px", "residual_y_px"}
@@ -41,38 +40,19 @@ INSTALL = (
 @pytest.fixture(scope="module")
 def shared(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with pictures of pattern and table, and the calibration; not to be changed."""
-    folder = tmp_path_factory.mktemp("camera")
-    done("camera", "view", "--pattern", "--frame", "--out", "pattern.png", cwd=folder)
-    done("camera", "view", "--frame", "--out", "table.png", cwd=folder)
-    done("camera", "calibrate", "pattern.png", *AS_IT_LIES, "--out", "cal.json", cwd=folder)
-    return folder
+    return photographed(tmp_path_factory.mktemp("camera"))
 
 
 @pytest.fixture
 def folder(shared: Path, tmp_path: Path) -> Path:
     """A folder of this test alone with pattern.png, table.png and cal.json."""
-    for path in shared.iterdir():
-        (tmp_path / path.name).symlink_to(path)
-    return tmp_path
+    return linked(shared, tmp_path)
 
 
 def calibrated(*args: Arg, cwd: Path) -> dict[str, Any]:
     """Return what ``calibrate`` gives."""
     value: dict[str, Any] = done("camera", "calibrate", *args, "--json", cwd=cwd).json
     return value
-
-
-def located(*args: Arg, cwd: Path) -> dict[str, dict[str, Any]]:
-    """Return what ``locate`` gives for the table, by name."""
-    ended = done("camera", "locate", "table.png", *args, "--json", cwd=cwd)
-    assert ended.err == ""
-    return {seen["name"]: seen for seen in ended.json}
-
-
-def place(seen: dict[str, Any]) -> tuple[float, float]:
-    """Return the only place where something is seen."""
-    (only,) = seen["places"]
-    return only["x_in"], only["y_in"]
 
 
 def test_what_a_picture_of_the_pattern_gives_finds_what_is_on_the_table(tmp_path: Path) -> None:

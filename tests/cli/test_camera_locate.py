@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from tests.cli.program import Arg, done, refused
+from tests.cli.camera_table import linked, located, photographed, place
+from tests.cli.program import done, refused
 
 PUCK, WRIST = (-3.0, 22.4), (0.0, 14.9)
 """Where they are as a trial begins (in)."""
@@ -16,31 +17,13 @@ PUCK, WRIST = (-3.0, 22.4), (0.0, 14.9)
 @pytest.fixture(scope="module")
 def shared(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a picture of the table and the calibration; not to be changed."""
-    folder = tmp_path_factory.mktemp("camera")
-    done("camera", "view", "--frame", "--out", "table.png", cwd=folder)
-    done("camera", "calibrate", "--out", "cal.json", cwd=folder)
-    return folder
+    return photographed(tmp_path_factory.mktemp("camera"))
 
 
 @pytest.fixture
 def folder(shared: Path, tmp_path: Path) -> Path:
     """A folder of this test alone with table.png and cal.json."""
-    for path in shared.iterdir():
-        (tmp_path / path.name).symlink_to(path)
-    return tmp_path
-
-
-def located(*args: Arg, cwd: Path) -> dict[str, dict[str, Any]]:
-    """Return what is found on the table, by name."""
-    ended = done("camera", "locate", "table.png", *args, "--json", cwd=cwd)
-    assert ended.err == ""
-    return {seen["name"]: seen for seen in ended.json}
-
-
-def place(seen: dict[str, Any]) -> tuple[float, float]:
-    """Return the only place where something is seen."""
-    (only,) = seen["places"]
-    return only["x_in"], only["y_in"]
+    return linked(shared, tmp_path)
 
 
 BAD_CALIBRATIONS: dict[str, tuple[bytes | dict[str, Any], str]] = {

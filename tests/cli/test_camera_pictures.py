@@ -15,10 +15,9 @@ import pytest
 from PIL import Image
 
 from affcli.perception.rendering import Picture
+from tests.cli.camera_table import AS_IT_LIES
 from tests.cli.program import Arg, done, names_in, refused
 
-AS_IT_LIES = ("--turn", "180", "--origin", "-12.5,9.2")
-"""How the pattern of the simulated table lies."""
 CARDBOARD = (220, 226, 228)
 RED = (40, 40, 200)
 """Blue green red, as all pictures here."""
