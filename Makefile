@@ -79,7 +79,7 @@ $(MADE):
 	@printf '%s\n' '$(CURDIR)' > $@
 
 $(INSTALLED): $(MADE) pyproject.toml requirements.lock
-	$(PIP) install -q -c requirements.lock -e '.[camera]'
+	$(PIP) install -q -c requirements.lock -e '.[camera,figures]'
 	@touch $@
 
 # What check and test need includes what demo needs.

@@ -7,8 +7,13 @@ from pathlib import Path
 from affcli import __version__
 from affcli.store import Fact, State, place_facts
 
-NEEDED = ("numpy", "pymunk", "SQLAlchemy", "alembic", "typer", "rich")
-FOR_THE_CAMERA = ("opencv-python-headless", "pillow", "scipy")
+NEEDED = ("numpy", "pymunk", "SQLAlchemy", "alembic", "typer", "rich", "jinja2")
+EXTRAS = {
+    "the camera": ("camera", ("opencv-python-headless", "pillow", "scipy")),
+    "figures": ("figures", ("matplotlib",)),
+    "parquet files": ("parquet", ("pyarrow",)),
+}
+"""What only some need: by what it is for, the name of the extra and its packages."""
 
 
 def facts(database: Path) -> tuple[Fact, ...]:
@@ -20,8 +25,9 @@ def facts(database: Path) -> tuple[Fact, ...]:
     return (
         Fact("affcli", "ok", f"{__version__}, Python {platform.python_version()}"),
         _packages("packages", NEEDED, "install affcli again", missing="bad"),
-        _packages(
-            "the camera", FOR_THE_CAMERA, "to use it: pip install 'affcli[camera]'", missing="look"
+        *(
+            _packages(what, names, f"to use it: pip install 'affcli[{extra}]'", missing="look")
+            for what, (extra, names) in EXTRAS.items()
         ),
         *place_facts(database),
     )
