@@ -8,6 +8,7 @@ from affcli.cli import (
     camera,
     db,
     doctor,
+    figure,
     learn,
     report,
     reproduce,
@@ -32,6 +33,7 @@ app.command("sql")(sql.sql)
 app.command("doctor")(doctor.doctor)
 app.add_typer(camera.app, name="camera")
 app.add_typer(db.app, name="db")
+app.add_typer(figure.app, name="figure")
 
 
 @app.callback(invoke_without_command=True)

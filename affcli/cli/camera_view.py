@@ -16,7 +16,7 @@ from affcli.cli.options import (
     checked_seed,
 )
 from affcli.cli.terminal import say
-from affcli.errors import BadInputError, UsageError, one_line
+from affcli.errors import UsageError, one_line
 
 if TYPE_CHECKING:
     from affcli.store import StepScene
@@ -122,12 +122,8 @@ def _check_where(out: Path | None, video: Path | None, *, force: bool) -> None:
     if out is None and video is None:
         raise UsageError("where to? give --out FILE.png, or --video FILE.mp4")
     for path, endings in ((out, (".png",)), (video, (".mp4", ".avi"))):
-        if path is None:
-            continue
-        require_new(path, force=force)
-        if path.suffix.lower() not in endings:
-            wanted = " or ".join(f"*{ending}" for ending in endings)
-            raise BadInputError(f"{one_line(path)}: name it {wanted}")
+        if path is not None:
+            require_new(path, force=force, endings=endings)
 
 
 def _stored_scene(

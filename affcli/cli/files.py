@@ -2,17 +2,23 @@
 
 import os
 import tempfile
+from collections.abc import Collection
 from pathlib import Path
 
 from affcli.errors import BadInputError, one_line
 
 
-def require_new(path: Path, *, force: bool) -> None:
+def require_new(path: Path, *, force: bool, endings: Collection[str] = ()) -> None:
     """Refuse to write over something, before any work is done for it.
 
+    Args:
+        path: where a command is asked to write.
+        force: write over a file that is there.
+        endings: one of which the name must have; any will do if empty.
+
     Raises:
-        BadInputError: there is something at `path` and `force` was not given; or it is no file, or
-            its folder does not exist.
+        BadInputError: there is something at `path` and `force` was not given; or it is no file, its
+            folder does not exist, or its name has another ending.
     """
     shown = one_line(path)
     try:
@@ -24,6 +30,9 @@ def require_new(path: Path, *, force: bool) -> None:
         raise BadInputError(f"{shown}: not a file; name another")
     if exists and not force:
         raise BadInputError(f"{shown}: exists already; name another file, or give --force")
+    if endings and path.suffix.lower() not in endings:
+        wanted = " or ".join(f"*{ending}" for ending in endings)
+        raise BadInputError(f"{shown}: name it {wanted}")
     if not folder:
         raise BadInputError(f"{shown}: its folder does not exist; make it, or name another file")
 

@@ -50,6 +50,10 @@ class Tool:
         """Return this shape in another colour: how §7.2 simulates a tool that broke."""
         return replace(self, color=color)
 
+    def part_nearest(self, point: Point) -> ToolPart:
+        """Return the part nearest to `point` (in, tool frame); of equally near ones the first."""
+        return min(self.parts, key=lambda part: part.outline.distance(point))
+
     def parts_missing_in(self, other: "Tool") -> tuple[ToolPart, ...]:
         """Return the parts this tool has and `other` lacks, by name."""
         kept = {part.name for part in other.parts}

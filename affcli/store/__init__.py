@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from affcli.store.packing import PackedRobot, pack_robot
     from affcli.store.place import Fact, State, place_facts
     from affcli.store.query import QueryResult, run_sql
+    from affcli.store.records import StoredRow, TrialInfo
     from affcli.store.repository import Store
     from affcli.store.results import (
         BehaviorGroup,
@@ -44,8 +45,10 @@ __all__ = [
     "State",
     "StepScene",
     "Store",
+    "StoredRow",
     "StoredStep",
     "SuccessCount",
+    "TrialInfo",
     "TrialResult",
     "backup",
     "check",
@@ -66,6 +69,7 @@ _HOMES = {
     "packing": ("PackedRobot", "pack_robot"),
     "place": ("Fact", "State", "place_facts"),
     "query": ("QueryResult", "run_sql"),
+    "records": ("StoredRow", "TrialInfo"),
     "repository": ("Store",),
     "results": (
         *("BehaviorGroup", "OutcomeCount", "RowUse", "StoredStep", "SuccessCount", "TrialResult"),

@@ -92,7 +92,7 @@ class LearningRuns(Connected):
             if _info(connection, wanted) is None:
                 row = new_learning_run(spec, versions, now, session_id)
                 insert_one(connection, learning_run, row)
-            return _info_from(connection.execute(wanted).mappings().one())
+            return info_from(connection.execute(wanted).mappings().one())
 
     def append_learning(
         self,
@@ -169,7 +169,7 @@ class LearningRuns(Connected):
                 wanted = wanted.where(learning_run.c[column] == value)
         with self.reading() as connection:
             rows = connection.execute(wanted.order_by(learning_run.c.id)).mappings().all()
-        return tuple(map(_info_from, rows))
+        return tuple(map(info_from, rows))
 
     def latest_run(self, tool: str) -> LearningRunInfo | None:
         """Return the latest finished run of `tool` that is not part of a reproduction."""
@@ -264,10 +264,10 @@ def _the_run(spec: LearningSpec, session_id: int | None) -> sa.Select[Any]:
 def _info(connection: sa.Connection, wanted: sa.Select[Any]) -> LearningRunInfo | None:
     """Return the run selected, None when there is none."""
     row = connection.execute(wanted).mappings().one_or_none()
-    return None if row is None else _info_from(row)
+    return None if row is None else info_from(row)
 
 
-def _info_from(row: sa.RowMapping) -> LearningRunInfo:
+def info_from(row: sa.RowMapping) -> LearningRunInfo:
     """Return what a row of learning_run says."""
     with reading_what_was_written(f"learning run {row['id']}"):
         return LearningRunInfo(

@@ -109,7 +109,10 @@ class StoredStep:
         row: the row tried, with its counters before the step.
         placing_status: of the position wrist.
         status: of the exploratory behavior; None when lowering the tool was blocked.
+        wrist_start, wrist_end: before and after the exploratory behavior; when the tool could not
+            be lowered, before and after it was carried there (in, table frame).
         seen_start, seen_end: where the attractor was seen (in, table frame).
+        true_start, true_end: where it truly was.
         expected, seen: movements (in, table frame); dz is not kept.
         seen_distance: of the movement seen, dz included (in).
         replicated: whether it counts as a success of the row.
@@ -126,8 +129,12 @@ class StoredStep:
     row: Affordance
     placing_status: str
     status: str | None
+    wrist_start: Point
+    wrist_end: Point
     seen_start: Point
     seen_end: Point
+    true_start: Point
+    true_end: Point
     expected: Movement
     seen: Movement
     seen_distance: float
@@ -339,8 +346,12 @@ def _stored_step(row: sa.RowMapping) -> StoredStep:
     return StoredStep(
         survivors=Survivors(*(row[f"step_rows_{name}"] for name in Survivors._fields)),
         row=tried,
-        seen_start=Point(row["step_start_object_x"], row["step_start_object_y"]),
-        seen_end=Point(row["step_end_object_x"], row["step_end_object_y"]),
+        wrist_start=_point(row, "wrist_start"),
+        wrist_end=_point(row, "wrist_end"),
+        seen_start=_point(row, "start_object"),
+        seen_end=_point(row, "end_object"),
+        true_start=_point(row, "true_start"),
+        true_end=_point(row, "true_end"),
         expected=Movement(row["step_expected_dx"], row["step_expected_dy"], 0.0),
         seen=Movement(row["step_seen_dx"], row["step_seen_dy"], 0.0),
         replicated=bool(row["step_replicated"]),
@@ -354,3 +365,8 @@ def _stored_step(row: sa.RowMapping) -> StoredStep:
             )
         },
     )
+
+
+def _point(row: sa.RowMapping, name: str) -> Point:
+    """Return a place from two columns of a step."""
+    return Point(row[f"step_{name}_x"], row[f"step_{name}_y"])

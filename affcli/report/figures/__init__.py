@@ -1,0 +1,1 @@
+"""Figures for a paper, in one look, by matplotlib's object API: returned, never saved."""

@@ -1,0 +1,105 @@
+"""What all figures share: fonts, colours, sizes, and how one becomes a file's bytes."""
+
+import io
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import matplotlib as mpl
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.typing import RcKeyType
+
+from affcli.errors import BadInputError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+ONE_COLUMN, TWO_COLUMNS = 3.4, 7.1
+"""Widths of figures in a two-column journal (in)."""
+
+BLUE, ORANGE, GREEN, VERMILION, PURPLE, SKY = (
+    *("#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9"),
+)
+"""Colours that people with any kind of colour vision tell apart (Okabe and Ito, 2008)."""
+INK, FAINT, PALE = "#222222", "#8c8c8c", "#e8e8e8"
+WOOD = "#d9d2c5"
+"""A tool under arrows: light enough that all of them stand out on it, also in grey."""
+
+STYLE: dict[RcKeyType, Any] = {
+    "font.family": "DejaVu Sans",  # comes with matplotlib: the same everywhere
+    "font.size": 7.0,
+    "axes.titlesize": 7.5,
+    "axes.labelsize": 7.0,
+    "xtick.labelsize": 6.5,
+    "ytick.labelsize": 6.5,
+    "legend.fontsize": 6.5,
+    "axes.linewidth": 0.6,
+    "axes.edgecolor": INK,
+    "text.color": INK,
+    "axes.labelcolor": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.major.size": 2.5,
+    "ytick.major.size": 2.5,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.frameon": False,
+    "lines.linewidth": 1.0,
+    "hatch.linewidth": 0.5,
+    "savefig.dpi": 300,
+    "figure.dpi": 100,
+    "pdf.fonttype": 42,  # whole fonts in the file, as journals ask
+    "svg.fonttype": "path",  # letters as shapes: nothing to be missing elsewhere
+    "svg.hashsalt": "affcli",  # the same ids in every file
+}
+
+FORMATS = {".png": "png", ".svg": "svg", ".pdf": "pdf"}
+"""By the ending of a file's name."""
+METADATA: dict[str, dict[str, None]] = {
+    "png": {"Software": None},
+    "svg": {"Date": None, "Creator": None},
+    "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+}
+"""Nothing of when or with what: the same figure gives the same file."""
+
+
+@contextmanager
+def canvas(width: float, height: float) -> Iterator[Figure]:
+    """Give an empty figure in affcli's style; draw on it inside the ``with`` block.
+
+    Args:
+        width, height: in inches.
+    """
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(width, height), layout="constrained")
+        FigureCanvasAgg(figure)
+        yield figure
+
+
+def encoded(figure: Figure, ending: str) -> bytes:
+    """Return a figure as the bytes of a file; the same figure gives the same bytes.
+
+    Args:
+        figure: what to write.
+        ending: of the file's name: a key of `FORMATS`.
+
+    Raises:
+        BadInputError: another ending.
+    """
+    kind = FORMATS.get(ending.lower())
+    if kind is None:
+        raise BadInputError(f"{ending or 'no ending'}: figures are {', '.join(FORMATS)}")
+    page = io.BytesIO()
+    with mpl.rc_context(STYLE):
+        figure.savefig(page, format=kind, metadata=METADATA[kind])
+    return page.getvalue()
+
+
+def as_map(axes: "Axes", *, labels: tuple[str, str] = ("x (in)", "y (in)")) -> None:
+    """Make axes a map: inches of the same length in both directions."""
+    axes.set_aspect("equal", adjustable="box")
+    axes.set_xlabel(labels[0])
+    axes.set_ylabel(labels[1])
