@@ -21,7 +21,9 @@ from affcli.core.trial import (
 )
 from affcli.lab.bench import TRIAL, Bench, stable_number, tool_named
 from affcli.lab.sensing import calibration_of
+from affcli.planning.nested_query import Choose, choose_row
 from affcli.procedures.extension_of_reach import extension_of_reach
+from affcli.simulation.robot import Film
 from affcli.simulation.world import World
 
 T = TypeVar("T")
@@ -40,7 +42,12 @@ class Ended(Generic[T]):
 
 
 def run_trial(
-    spec: TrialSpec, settings: Settings, table: AffordanceTable, world: World
+    spec: TrialSpec,
+    settings: Settings,
+    table: AffordanceTable,
+    world: World,
+    film: Film | None = None,
+    choose: Choose = choose_row,
 ) -> Generator[tuple[StepRecord, Truth], None, TrialEnd]:
     """Run one testing trial; its table's counters change as it goes.
 
@@ -49,6 +56,8 @@ def run_trial(
         settings: those of the learning run, but for the sensor, which `spec` names.
         table: what the robot learned of `spec.tool`.
         world: any world of these settings; it is laid out anew. Sharing one saves time.
+        film: shown what happens.
+        choose: the nested searches.
     """
     settings = with_sensor(settings, spec.sensor)
     layout = settings.workspace.layout
@@ -58,6 +67,7 @@ def run_trial(
     held = tool_named(settings, spec.shape).painted(believed.color)
     start = start_positions(layout)[spec.start]
     bench.experimenter.lay_out_trial(held, start, goal_regions(layout)[spec.goal])
+    bench.robot.film = film
     steps = extension_of_reach(
         bench.robot,
         bench.sensor,
@@ -65,6 +75,7 @@ def run_trial(
         table,
         bench.behaviors.binding,
         settings.trial,
+        choose,
     )
     trial = Ended(steps)
     for record in trial:

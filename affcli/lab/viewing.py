@@ -15,6 +15,7 @@ from affcli.core.task import goal_regions, start_positions
 from affcli.core.tool import PUCK_COLOR, TOOL_PARTS
 from affcli.errors import DatabaseError
 from affcli.lab.bench import TRIAL, Bench, tool_named
+from affcli.lab.filming import FRAME_RATE, Reel
 from affcli.lab.sensing import eye_of
 from affcli.simulation.world import World
 
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
     from affcli.perception.segmentation import Segmentation
     from affcli.store import StepScene
 
-FRAME_RATE = 15.0
-"""§4: "The computer vision code was run at 15Hz"."""
 VIEW = 3
 """First word of the key of the random stream that decides the noise in a picture made to be looked
 at: it is not that of the picture the robot saw then."""
@@ -134,20 +133,15 @@ def scenes_of_step(step: "StepScene", settings: Settings) -> list[Scene]:
     world.tool, world.goal = begins.tool, begins.goal
     world.wrist = step.wrist_before or world.home
     world.attractor = begins.attractor
-    frames: list[Scene] = []
-
-    def film(clock: float, scene: Scene) -> None:
-        """Keep the scene when the time of the next frame has come."""
-        while clock >= len(frames) / FRAME_RATE:
-            frames.append(scene)
-
+    reel = Reel()
+    bench.robot.film = reel
     target = step.wrist_end if step.blocked else step.wrist_start
     # With an offset of zero, position wrist goes to where the attractor was seen: to the target.
     aim = Observation(target.x, target.y, *[0.0] * 10)
-    bench.robot.execute(BehaviorCall.of(POSITION_WRIST, {"x": 0.0, "y": 0.0}), aim, film)
+    bench.robot.execute(BehaviorCall.of(POSITION_WRIST, {"x": 0.0, "y": 0.0}), aim)
     if not step.blocked:
-        bench.robot.execute(step.call, aim, film)
-    return frames
+        bench.robot.execute(step.call, aim)
+    return list(reel.cut())
 
 
 def _scene(step: "StepScene", settings: Settings) -> Scene:

@@ -5,6 +5,7 @@ searches." A row is known by its position in the table: a lower position is an o
 """
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -31,6 +32,24 @@ class Choice(NamedTuple):
 
     position: int | None
     survivors: Survivors
+
+
+Choose = Callable[[AffordanceTable, Observation, GoalRegion, Robot], Choice]
+"""What `choose_row` does, for whoever wants to look on while it does."""
+
+
+class Candidate(NamedTuple):
+    """A row that search 4 weighed.
+
+    Args:
+        position: its position in the table.
+        expected_distance: how far from the goal's centre it expects to leave the attractor (in).
+        repositioning: how far the wrist would travel to use it (in).
+    """
+
+    position: int
+    expected_distance: float
+    repositioning: float
 
 
 def consistent_with_colors(table: AffordanceTable, seen: Observation) -> Rows:
@@ -140,10 +159,37 @@ def choose_row(table: AffordanceTable, seen: Observation, goal: GoalRegion, robo
         goal: the goal region as observed.
         robot: asked where its wrist is and what it reaches.
     """
+    nearest, left = _first_three(table, seen, goal, robot)
+    return Choice(least_repositioning(table, nearest, seen, robot.wrist), left)
+
+
+def candidates(
+    table: AffordanceTable, seen: Observation, goal: GoalRegion, robot: Robot
+) -> tuple[Candidate, ...]:
+    """Return the rows that search 4 chooses from, the one it chooses first, then the next best.
+
+    Args:
+        table, seen, goal, robot: as for `choose_row`.
+    """
+    nearest, _ = _first_three(table, seen, goal, robot)
+    dx = table.offset_x[nearest] - (seen.object_x - robot.wrist.x)
+    dy = table.offset_y[nearest] - (seen.object_y - robot.wrist.y)
+    travel = dx * dx + dy * dy
+    ends_x = table.movement_x[nearest] + (seen.object_x - goal.center.x)
+    ends_y = table.movement_y[nearest] + (seen.object_y - goal.center.y)
+    distance = np.hypot(ends_x, ends_y)
+    return tuple(
+        Candidate(int(nearest[i]), float(distance[i]), math.sqrt(travel[i]))
+        for i in np.argsort(travel, kind="stable")
+    )
+
+
+def _first_three(
+    table: AffordanceTable, seen: Observation, goal: GoalRegion, robot: Robot
+) -> tuple[Rows, Survivors]:
+    """Run searches 1 to 3 and the arm's reach; return what is left, and how many each left."""
     consistent = consistent_with_colors(table, seen)
     probable = likely_to_succeed(table, consistent)
     reachable = wrist_within_reach(table, probable, seen, robot)
     nearest = top_by_expected_distance(table, reachable, seen, goal)
-    position = least_repositioning(table, nearest, seen, robot.wrist)
-    survivors = Survivors(len(consistent), len(probable), len(reachable), len(nearest))
-    return Choice(position, survivors)
+    return nearest, Survivors(len(consistent), len(probable), len(reachable), len(nearest))

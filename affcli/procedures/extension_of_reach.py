@@ -11,7 +11,7 @@ from affcli.core.ports import Experimenter, Robot, Sensor
 from affcli.core.task import GoalRegion
 from affcli.core.trial import Outcome, StepRecord, TrialEnd
 from affcli.errors import SimulationDivergedError
-from affcli.planning.nested_query import choose_row
+from affcli.planning.nested_query import Choose, choose_row
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +29,7 @@ def extension_of_reach(
     table: AffordanceTable,
     binding: BehaviorCall,
     limits: TrialLimits,
+    choose: Choose = choose_row,
 ) -> Generator[StepRecord, None, TrialEnd]:
     """Bring the attractor over the goal region, one behavior at a time.
 
@@ -43,6 +44,7 @@ def extension_of_reach(
         table: what the robot learned. Its counters are updated as the trial goes on (§3.2).
         binding: the binding behavior, executed once at the start.
         limits: when to give up.
+        choose: the nested searches.
 
     Yields:
         A record of each step, after the counters were updated.
@@ -59,7 +61,7 @@ def extension_of_reach(
         if experimenter.attractor_out_of_reach():
             return TrialEnd(Outcome.ATTRACTOR_OUT_OF_REACH, number - 1, robot.clock)
         try:
-            step = _step(number, robot, sensor, table, seen, goal)
+            step = _step(number, robot, sensor, table, seen, goal, choose)
         except SimulationDivergedError:
             # Kept as a trial of its own kind, which counts neither as solved nor as failed.
             return TrialEnd(Outcome.INVALID, number - 1, robot.clock)
@@ -79,9 +81,10 @@ def _step(
     table: AffordanceTable,
     seen: Observation,
     goal: GoalRegion,
+    choose: Choose,
 ) -> StepRecord | TrialEnd:
     """Choose a row, try it, judge it, count it; or end the trial when no row is left."""
-    choice = choose_row(table, seen, goal, robot)
+    choice = choose(table, seen, goal, robot)
     if choice.position is None:
         return TrialEnd(Outcome.NO_ROW, number - 1, robot.clock, choice.survivors)
     row = table.row(choice.position)

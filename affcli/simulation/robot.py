@@ -49,6 +49,8 @@ class SimulatedRobot:
         self.clock = 0.0
         self.attractor_before = world.attractor
         """Where the attractor truly was when the last behavior began; not for the robot's eyes."""
+        self.film: Film | None = None
+        """Shown what happens while a behavior is executed; it changes nothing."""
 
     @property
     def wrist(self) -> Point:
@@ -75,36 +77,29 @@ class SimulatedRobot:
             held &= y >= squared
         return held
 
-    def execute(
-        self, call: BehaviorCall, seen: Observation | None, film: Film | None = None
-    ) -> Execution:
-        """Execute one behavior to its end (see the protocol in `core.ports`).
-
-        Args:
-            call, seen: as in the protocol.
-            film: shown what happens meanwhile; it changes nothing.
-        """
+    def execute(self, call: BehaviorCall, seen: Observation | None) -> Execution:
+        """Execute one behavior to its end (see the protocol in `core.ports`)."""
         start = self._world.wrist
         path = self._paths[call.name](call, start, seen)
         began = self.clock
         self.attractor_before = self._world.attractor
-        status = self._carry(path, film) if path.lifted else self._slide(path, film)
+        status = self._carry(path) if path.lifted else self._slide(path)
         return Execution(call, status, start, self._world.wrist, self.clock - began)
 
-    def _carry(self, path: WristPath, film: Film | None) -> ExecutionStatus:
+    def _carry(self, path: WristPath) -> ExecutionStatus:
         """Move lifted and lower the tool; keep it lifted there when the attractor lies under it."""
         target = Point(on_grid(path.end.x), on_grid(path.end.y))
         if not (self._low.holds(target) and self._high.holds(target)):
             return ExecutionStatus.OUT_OF_REACH
         travel = math.dist(self._world.wrist, target)
-        if film is not None:
-            self._film_carrying(path, target, film)
+        if self.film is not None:
+            self._film_carrying(path, target, self.film)
         self.clock += path.dwell + trapezoid_time(travel, path.speed, path.acceleration)
         self._world.wrist = target
         clear = self._world.clear_of_attractor(target)
         return ExecutionStatus.DONE if clear else ExecutionStatus.BLOCKED
 
-    def _slide(self, path: WristPath, film: Film | None) -> ExecutionStatus:
+    def _slide(self, path: WristPath) -> ExecutionStatus:
         """Slide straight on the table, as far as the reach goes."""
         start = self._world.wrist
         asked = Point(on_grid(path.end.x), on_grid(path.end.y))
@@ -113,12 +108,12 @@ class SimulatedRobot:
         if distance > 0.0:
             motion = trapezoid(on_grid(distance), path.speed, path.acceleration)
             direction = Point((end.x - start.x) / distance, (end.y - start.y) / distance)
-            watch = None if film is None else self._filmed(film, start, direction)
+            watch = None if self.film is None else self._filmed(self.film, start, direction)
             self._world.slide(direction, end, motion, watch)
             self.clock += duration(motion)
         self.clock += path.dwell
-        if film is not None:
-            film(self.clock, self._world.scene)
+        if self.film is not None:
+            self.film(self.clock, self._world.scene)
         return ExecutionStatus.DONE if end == asked else ExecutionStatus.TRUNCATED
 
     def _filmed(self, film: Film, start: Point, direction: Point) -> Moment:

@@ -120,7 +120,7 @@ def affordance_row(run: int, tool: str, row: Affordance) -> tuple[object, ...]:
     )
 
 
-def affordance_from(row: "RowMapping", *, as_learned: bool) -> Affordance:
+def affordance_from(row: "RowMapping | dict[str, Any]", *, as_learned: bool) -> Affordance:
     """Return an affordance from its row.
 
     Args:

@@ -1,5 +1,6 @@
 """The store as the rest of affcli sees it."""
 
+from affcli.store.comparing import Comparing
 from affcli.store.learning import LearningRuns
 from affcli.store.records import Records
 from affcli.store.results import Results
@@ -7,7 +8,7 @@ from affcli.store.scenes import Scenes
 from affcli.store.trials import Trials
 
 
-class Store(LearningRuns, Trials, Records, Results, Scenes):
+class Store(LearningRuns, Trials, Records, Results, Scenes, Comparing):
     """An open database: learning runs, trials, and results for reports.
 
     Every method is one transaction and returns plain values; no row or connection leaves the store.

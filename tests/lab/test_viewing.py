@@ -6,9 +6,10 @@ import pytest
 from affcli.config import Settings, settings_from_json
 from affcli.core.scene import Scene
 from affcli.errors import UsageError
+from affcli.lab.filming import FRAME_RATE
 from affcli.lab.learning import learn
 from affcli.lab.solving import solve
-from affcli.lab.viewing import FRAME_RATE, scenes_of_step, view_of_step, view_of_table
+from affcli.lab.viewing import scenes_of_step, view_of_step, view_of_table
 from affcli.store import StepScene, Store, run_sql
 from tests.lab.quick import now, spec_of
 

@@ -1,0 +1,213 @@
+"""Doing again what the database holds, scene by scene, held against the record (§6, §7)."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import islice
+
+from affcli.config import Settings, settings_from_json
+from affcli.core.affordance import Affordance
+from affcli.core.affordance_table import AffordanceTable
+from affcli.core.observation import Observation
+from affcli.core.ports import Robot
+from affcli.core.scene import Scene
+from affcli.core.task import GoalRegion
+from affcli.core.tool import TOOL_PARTS
+from affcli.core.trial import BabblingRecord, Counters, TrialEnd, TrialStep, Truth
+from affcli.errors import DatabaseError
+from affcli.lab.filming import FRAME_RATE, Reel
+from affcli.lab.learning import LearningRun
+from affcli.lab.trials import Ended, LostAffordances, run_trial
+from affcli.planning.nested_query import Candidate, Choice, candidates, choose_row
+from affcli.simulation.world import World
+from affcli.store import Difference, LearningRunInfo, Store, TrialInfo
+
+CLOSE = 5
+"""Rows remembered of those that search 4 chose from, the chosen one among them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Considered:
+    """A row that search 4 chose from.
+
+    Args:
+        id: the row's number in the store.
+        row: with its counters as they were then.
+        weighed: what searches 3 and 4 made of it.
+    """
+
+    id: int
+    row: Affordance
+    weighed: Candidate
+
+
+@dataclass(frozen=True, slots=True)
+class ReplayedStep:
+    """One step of a trial, done again.
+
+    Args:
+        step: what the robot did and saw, and what truly happened.
+        seen: the observation by which the row was chosen.
+        goal: the goal region as the robot saw it.
+        considered: the rows that came closest in search 4, the chosen one first.
+        scenes: 15 a robot second, from the query to the end of the behavior.
+        placed: how many of the scenes belong to the position wrist.
+    """
+
+    step: TrialStep
+    seen: Observation
+    goal: GoalRegion
+    considered: tuple[Considered, ...]
+    scenes: tuple[Scene, ...]
+    placed: int
+
+
+@dataclass(frozen=True, slots=True)
+class Replay:
+    """A trial, done again.
+
+    Args:
+        trial: the record.
+        settings: those of the learning run.
+        opening: the table when the trial begins.
+        steps: what was done: as many steps as the record holds.
+        end: how it ended; None when the record does not say.
+        differences: where it differs from the record; empty when it is the same to the bit.
+    """
+
+    trial: TrialInfo
+    settings: Settings
+    opening: Scene
+    steps: tuple[ReplayedStep, ...]
+    end: TrialEnd | None
+    differences: tuple[Difference, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ReplayedBehavior:
+    """One behavior of a learning run, done again.
+
+    Args:
+        record: what the robot did and saw.
+        truth: where the attractor truly was.
+        scenes: 15 a robot second, from the position wrist to the end of the behavior; those of the
+            first behavior begin with the grasp.
+        differences: where it differs from the record; empty when it is the same to the bit.
+    """
+
+    record: BabblingRecord
+    truth: Truth
+    scenes: tuple[Scene, ...]
+    differences: tuple[Difference, ...]
+
+
+class _Onlooker:
+    """Notes what each query was about, and cuts the film there."""
+
+    def __init__(self, ids: dict[int, int]) -> None:
+        self.reel = Reel()
+        self._ids = ids
+        self.seen: Observation | None = None
+        self.goal: GoalRegion | None = None
+        self.considered: tuple[Considered, ...] = ()
+
+    def choose(
+        self, table: AffordanceTable, seen: Observation, goal: GoalRegion, robot: Robot
+    ) -> Choice:
+        """Choose as the robot does, and remember what came close."""
+        self.reel.cut()
+        self.seen, self.goal = seen, goal
+        close = candidates(table, seen, goal, robot)[:CLOSE]
+        rows = [(table.row(one.position), one) for one in close]
+        self.considered = tuple(Considered(self._ids[row.step], row, one) for row, one in rows)
+        return choose_row(table, seen, goal, robot)
+
+
+def replay_trial(store: Store, trial_id: int) -> Replay:
+    """Do a stored trial again, from its settings, its seed and the table it began with.
+
+    Args:
+        store: open.
+        trial_id: its number.
+
+    Raises:
+        UsageError: there is none of that number.
+        DatabaseError: it holds a tool that affcli does not know.
+    """
+    trial = store.trial(trial_id)
+    settings = settings_from_json(trial.settings)
+    spec = trial.spec
+    if not {spec.tool, spec.shape} <= set(TOOL_PARTS):
+        raise DatabaseError(f"trial {trial_id} holds a tool that affcli does not know")
+    if spec.counters is Counters.STORED:
+        table, ids = store.table_before(trial_id)
+    else:
+        table, ids = store.affordance_table(trial.run_id, as_learned=True)
+    lost = None
+    if spec.shape != spec.tool:
+        lost = LostAffordances(settings, spec.shape, store.row_starts(trial.run_id))
+    recorded = len(store.trial_steps(trial_id))
+    world = World(settings.workspace, settings.physics)
+    onlooker = _Onlooker(ids)
+    running = Ended(run_trial(spec, settings, table, world, onlooker.reel, onlooker.choose))
+    steps: list[ReplayedStep] = []
+    again = iter(running)
+    # An interrupted trial has no end: no more is done than was.
+    wanted = again if trial.outcome is not None else islice(again, recorded)
+    opening: Scene | None = None
+    for record, truth in wanted:
+        judged = lost.lost(record.row) if lost is not None else None
+        scenes = onlooker.reel.cut()
+        opening = opening or scenes[0]
+        steps.append(_replayed(TrialStep(record, truth, judged), onlooker, scenes))
+    end = running.end if trial.outcome is not None else None
+    differences = store.trial_differences(trial_id, [one.step for one in steps], end, ids)
+    return Replay(trial, settings, opening or world.scene, tuple(steps), end, differences)
+
+
+def _replayed(step: TrialStep, onlooker: _Onlooker, scenes: tuple[Scene, ...]) -> ReplayedStep:
+    """Return a step with what was noted of it."""
+    if onlooker.seen is None or onlooker.goal is None:
+        raise LookupError("a step without a query")
+    execution = step.record.execution
+    pushing = 0 if execution is None else round(execution.duration * FRAME_RATE)
+    return ReplayedStep(
+        step,
+        onlooker.seen,
+        onlooker.goal,
+        onlooker.considered,
+        scenes,
+        max(0, len(scenes) - pushing),
+    )
+
+
+def replay_run(
+    store: Store, run: LearningRunInfo, first: int = 1, last: int | None = None
+) -> Iterator[ReplayedBehavior]:
+    """Do a stored learning run again, from its settings and seed.
+
+    Args:
+        store: open.
+        run: which.
+        first: behaviors before this one are done, and held against the record, but not yielded.
+        last: the last behavior to do; None for all that are stored.
+
+    Yields:
+        Each behavior from `first` on, as soon as it is done; before that, those of the earlier ones
+        that differ from their record.
+    """
+    if run.spec.tool not in TOOL_PARTS:
+        raise DatabaseError(f"learning run {run.id} holds a tool that affcli does not know")
+    learning = LearningRun(run.spec)
+    reel = Reel()
+    if first == 1:
+        learning.bench.robot.film = reel
+    count = run.behaviors if last is None else min(last, run.behaviors)
+    for record, truth in islice(learning.steps(), count):
+        # The film of what goes before is not wanted, and takes longer than the doing.
+        if record.step == first - 1:
+            reel.skip_to(learning.bench.robot.clock)
+            learning.bench.robot.film = reel
+        differences = store.behavior_differences(run.id, run.spec.tool, [(record, truth)])
+        scenes = reel.cut()
+        if record.step >= first or differences:
+            yield ReplayedBehavior(record, truth, scenes, differences)
