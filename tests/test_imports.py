@@ -9,6 +9,7 @@ import pytest
 from affcli.store import open_store
 
 CAMERA = {"cv2", "scipy", "PIL"}
+PICTURES = {"matplotlib", "jinja2", "pyarrow"}
 RUN = """\
 import sys
 from affcli.cli.main import main
@@ -42,7 +43,16 @@ def empty(tmp_path: Path) -> Path:
 
 
 def test_help_imports_nothing_heavy() -> None:
-    heavy = {"numpy", "sqlalchemy", "pymunk", "alembic", "sqlite3", "rich.table", *CAMERA}
+    heavy = {
+        "numpy",
+        "sqlalchemy",
+        "pymunk",
+        "alembic",
+        "sqlite3",
+        "rich.table",
+        *CAMERA,
+        *PICTURES,
+    }
     for args in (("--help",), ("--version",), ("learn", "--help"), ("camera", "view", "--help")):
         assert not imported_by(*args) & heavy
 

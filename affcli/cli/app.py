@@ -10,6 +10,7 @@ from affcli.cli import (
     doctor,
     figure,
     learn,
+    replay,
     report,
     reproduce,
     solve,
@@ -28,6 +29,7 @@ app.command("learn")(learn.learn)
 app.command("solve")(solve.solve)
 app.command("break-tool")(break_tool.break_tool)
 app.command("report")(report.report)
+app.command("replay")(replay.replay)
 app.command("reproduce")(reproduce.reproduce)
 app.command("sql")(sql.sql)
 app.command("doctor")(doctor.doctor)

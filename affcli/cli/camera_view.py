@@ -8,6 +8,7 @@ import typer
 from affcli.cli.files import require_new, save
 from affcli.cli.options import (
     DEFAULT_DATABASE,
+    LARGEST_ID,
     Config,
     Database,
     Force,
@@ -21,7 +22,6 @@ from affcli.errors import UsageError, one_line
 if TYPE_CHECKING:
     from affcli.store import StepScene
 
-LARGEST_ID = 2**63 - 1
 Out = Annotated[Path | None, typer.Option("--out", help="The picture, *.png.", metavar="FILE")]
 Video = Annotated[
     Path | None, typer.Option("--video", help="15 frames/s, *.mp4 or *.avi.", metavar="FILE")

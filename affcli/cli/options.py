@@ -13,7 +13,7 @@ from affcli.core.task import GOAL_NUMBERS, START_NUMBERS
 from affcli.core.tool import TOOL_PARTS
 from affcli.errors import BadInputError, UsageError, one_line
 
-LARGEST_SEED = 2**63 - 1
+LARGEST_SEED = LARGEST_ID = 2**63 - 1
 LONGEST_HOURS = 10_000.0
 MOST_BEHAVIORS = 10_000_000
 MOST_ROBOTS = 100_000

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 from affcli.errors import AffcliError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from rich.console import Console, RenderableType
     from rich.progress import Progress, TaskID
@@ -66,6 +66,48 @@ def show_text(text: str) -> None:
 def show_json(value: Any) -> None:
     """Write JSON to stdout; a number that is not finite becomes null."""
     show_text(json.dumps(_finite(value), indent=2) + "\n")
+
+
+def play(pages: "Iterable[RenderableType]", pages_a_second: float) -> None:
+    """Show pages one after the other in one place of the terminal; the last one stays.
+
+    Pages for which there is no time are left out, but for the last.
+    """
+    import time
+
+    from rich.live import Live
+
+    with Live(console=_console(sys.stdout), auto_refresh=False) as live:
+        began = time.monotonic()
+        page: RenderableType = ""
+        for number, page in enumerate(pages):
+            early = began + number / pages_a_second - time.monotonic()
+            if early > 0.0:
+                live.update(page, refresh=True)
+                time.sleep(early)
+        live.update(page, refresh=True)
+
+
+def interactive() -> bool:
+    """Tell whether a person sees what is written to stdout and can answer."""
+    return sys.stdout.isatty() and sys.stdin is not None and sys.stdin.isatty()
+
+
+def asked(question: str) -> str | None:
+    """Ask on stderr; return the answer without blanks around it, None at the end of the input."""
+    _write(sys.stderr, question)
+    answer = sys.stdin.readline()
+    return answer.strip() if answer else None
+
+
+def columns() -> int:
+    """Return how wide the terminal is that stdout goes to; 80 without one."""
+    return _console(sys.stdout).width
+
+
+def shows_braille() -> bool:
+    """Tell whether stdout can be written in Unicode."""
+    return (sys.stdout.encoding or "").lower().replace("-", "").startswith("utf")
 
 
 class Bar:

@@ -1,103 +1,30 @@
 """Doing again what the database holds, scene by scene, held against the record (§6, §7)."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
 
-from affcli.config import Settings, settings_from_json
-from affcli.core.affordance import Affordance
+import numpy as np
+from numpy.typing import NDArray
+
+from affcli.config import settings_from_json
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.observation import Observation
 from affcli.core.ports import Robot
+from affcli.core.replay import Considered, Replay, ReplayedBehavior, ReplayedStep
 from affcli.core.scene import Scene
 from affcli.core.task import GoalRegion
 from affcli.core.tool import TOOL_PARTS
-from affcli.core.trial import BabblingRecord, Counters, TrialEnd, TrialStep, Truth
+from affcli.core.trial import Counters, TrialStep
 from affcli.errors import DatabaseError
 from affcli.lab.filming import FRAME_RATE, Reel
 from affcli.lab.learning import LearningRun
 from affcli.lab.trials import Ended, LostAffordances, run_trial
-from affcli.planning.nested_query import Candidate, Choice, candidates, choose_row
+from affcli.planning.nested_query import Choice, candidates, choose_row
 from affcli.simulation.world import World
-from affcli.store import Difference, LearningRunInfo, Store, TrialInfo
+from affcli.store import LearningRunInfo, Store
 
 CLOSE = 5
 """Rows remembered of those that search 4 chose from, the chosen one among them."""
-
-
-@dataclass(frozen=True, slots=True)
-class Considered:
-    """A row that search 4 chose from.
-
-    Args:
-        id: the row's number in the store.
-        row: with its counters as they were then.
-        weighed: what searches 3 and 4 made of it.
-    """
-
-    id: int
-    row: Affordance
-    weighed: Candidate
-
-
-@dataclass(frozen=True, slots=True)
-class ReplayedStep:
-    """One step of a trial, done again.
-
-    Args:
-        step: what the robot did and saw, and what truly happened.
-        seen: the observation by which the row was chosen.
-        goal: the goal region as the robot saw it.
-        considered: the rows that came closest in search 4, the chosen one first.
-        scenes: 15 a robot second, from the query to the end of the behavior.
-        placed: how many of the scenes belong to the position wrist.
-    """
-
-    step: TrialStep
-    seen: Observation
-    goal: GoalRegion
-    considered: tuple[Considered, ...]
-    scenes: tuple[Scene, ...]
-    placed: int
-
-
-@dataclass(frozen=True, slots=True)
-class Replay:
-    """A trial, done again.
-
-    Args:
-        trial: the record.
-        settings: those of the learning run.
-        opening: the table when the trial begins.
-        steps: what was done: as many steps as the record holds.
-        end: how it ended; None when the record does not say.
-        differences: where it differs from the record; empty when it is the same to the bit.
-    """
-
-    trial: TrialInfo
-    settings: Settings
-    opening: Scene
-    steps: tuple[ReplayedStep, ...]
-    end: TrialEnd | None
-    differences: tuple[Difference, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class ReplayedBehavior:
-    """One behavior of a learning run, done again.
-
-    Args:
-        record: what the robot did and saw.
-        truth: where the attractor truly was.
-        scenes: 15 a robot second, from the position wrist to the end of the behavior; those of the
-            first behavior begin with the grasp.
-        differences: where it differs from the record; empty when it is the same to the bit.
-    """
-
-    record: BabblingRecord
-    truth: Truth
-    scenes: tuple[Scene, ...]
-    differences: tuple[Difference, ...]
 
 
 class _Onlooker:
@@ -117,8 +44,11 @@ class _Onlooker:
         self.reel.cut()
         self.seen, self.goal = seen, goal
         close = candidates(table, seen, goal, robot)[:CLOSE]
-        rows = [(table.row(one.position), one) for one in close]
-        self.considered = tuple(Considered(self._ids[row.step], row, one) for row, one in rows)
+        rows = [table.row(one.position) for one in close]
+        self.considered = tuple(
+            Considered(self._ids[row.step], row, one.expected_distance, one.repositioning)
+            for row, one in zip(rows, close, strict=True)
+        )
         return choose_row(table, seen, goal, robot)
 
 
@@ -161,7 +91,10 @@ def replay_trial(store: Store, trial_id: int) -> Replay:
         steps.append(_replayed(TrialStep(record, truth, judged), onlooker, scenes))
     end = running.end if trial.outcome is not None else None
     differences = store.trial_differences(trial_id, [one.step for one in steps], end, ids)
-    return Replay(trial, settings, opening or world.scene, tuple(steps), end, differences)
+    return Replay(
+        *(trial_id, trial.run_id, spec, settings.workspace),
+        *(opening or world.scene, tuple(steps), end, differences),
+    )
 
 
 def _replayed(step: TrialStep, onlooker: _Onlooker, scenes: tuple[Scene, ...]) -> ReplayedStep:
@@ -211,3 +144,33 @@ def replay_run(
         scenes = reel.cut()
         if record.step >= first or differences:
             yield ReplayedBehavior(record, truth, scenes, differences)
+
+
+def gif_of(
+    replay: Replay,
+    numbers: Sequence[int],
+    speed: float,
+    drawn: Callable[[int], None] = lambda _: None,
+) -> bytes:
+    """Return some steps of a trial as a GIF.
+
+    Args:
+        replay: the trial.
+        numbers: of the steps, counting from 1.
+        speed: of the film, 1 for that of the robot. Frames are left out rather than shown faster
+            than a viewer can.
+        drawn: told how many frames have been drawn, each time one more is.
+    """
+    from affcli.perception.animation import gif
+    from affcli.report.figures.film import pictures_of
+
+    every = max(1, round(speed))
+
+    def shown() -> Iterator[NDArray[np.uint8]]:
+        """Yield the frames that are kept."""
+        for number, picture in enumerate(pictures_of(replay, numbers)):
+            drawn(number + 1)
+            if number % every == 0:
+                yield picture
+
+    return gif(shown(), 1e3 * every / FRAME_RATE / speed)

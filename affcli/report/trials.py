@@ -29,7 +29,7 @@ def explain_trial(
         lines.append(
             _indented(2, f"step {step.number}: row {step.row.step}, {step.row.exploratory}")
         )
-        lines += [_indented(4, line) for line in _step_lines(step, goal)]
+        lines += [_indented(4, line) for line in step_lines(step, goal)]
     if end.last_survivors is not None:
         lines.append(_indented(2, f"rows left: {_survivors(end.last_survivors)}"))
     return Group(*lines, "")
@@ -53,11 +53,12 @@ def distances(step: StepRecord, goal: GoalRegion) -> tuple[float, float, float]:
     return now, then, math.dist(step.placing.wrist_start, step.placing.wrist_end)
 
 
-def _step_lines(step: StepRecord, goal: GoalRegion) -> tuple[str, ...]:
+def step_lines(step: StepRecord, goal: GoalRegion) -> tuple[str, ...]:
     """Return the rows left by each search, why this one, the movements, and the probability."""
     row = step.row
     now, then, travel = distances(step, goal)
     x, y = step.start.object_position
+    expected, seen = movement_in_words(step.expected), movement_in_words(step.seen)
     verdict = "replicated" if step.replicated else "not replicated"
     if step.execution is None:
         verdict = f"{step.placing.status}, counted as a failure"
@@ -69,7 +70,7 @@ def _step_lines(step: StepRecord, goal: GoalRegion) -> tuple[str, ...]:
         f"attractor at ({x:.1f}, {y:.1f}), {now:.1f} in from the goal's centre",
         f"rows left: {_survivors(step.survivors)}, 1 chosen",
         f"chosen for least re-positioning, {travel:.1f} in; should end {then:.1f} in from there",
-        f"expected {_movement(step.expected)}, seen {_movement(step.seen)}: {verdict}",
+        f"expected {expected}, seen {seen}: {verdict}",
         f"probability {before} -> {after}",
     )
 
@@ -82,7 +83,7 @@ def _survivors(left: Survivors) -> str:
     )
 
 
-def _movement(movement: Movement) -> str:
+def movement_in_words(movement: Movement) -> str:
     """Return a movement as length and direction."""
     if movement.distance == 0.0:
         return "none"

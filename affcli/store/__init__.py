@@ -8,7 +8,6 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from affcli.store.comparing import Difference
     from affcli.store.copying import backup
     from affcli.store.health import Finding, check
     from affcli.store.info import DatabaseInfo, database_info
@@ -33,7 +32,6 @@ if TYPE_CHECKING:
 __all__ = [
     "BehaviorGroup",
     "DatabaseInfo",
-    "Difference",
     "Fact",
     "Finding",
     "LearningRunInfo",
@@ -63,7 +61,6 @@ __all__ = [
 ]
 
 _HOMES = {
-    "comparing": ("Difference",),
     "copying": ("backup",),
     "health": ("Finding", "check"),
     "info": ("DatabaseInfo", "database_info"),

@@ -1,11 +1,12 @@
 """Does what is done again equal its record? Column by column, to the bit."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import sqlalchemy as sa
 
 from affcli.core.affordance_table import AffordanceTable
+from affcli.core.replay import Difference
 from affcli.core.trial import BabblingRecord, TrialEnd, TrialStep, Truth
 from affcli.store.connection import Connected
 from affcli.store.mapping import (
@@ -21,22 +22,6 @@ from affcli.store.tables import affordance, behavior, step, trial
 
 COUNTERS = frozenset({"times_used", "times_successful"})
 """Trials change them after a row is made."""
-
-
-class Difference(NamedTuple):
-    """A value of the record that came out otherwise.
-
-    Args:
-        number: of the step or behavior; 0 for how a trial ended.
-        column: which value.
-        stored: what the record says.
-        again: what came out; None where nothing did.
-    """
-
-    number: int
-    column: str
-    stored: Any
-    again: Any
 
 
 class Comparing(Connected):

@@ -8,11 +8,12 @@ import pytest
 
 from affcli.config import Settings
 from affcli.core.behavior import ExecutionStatus
+from affcli.core.replay import Replay
 from affcli.errors import UsageError
 from affcli.lab.breaking import break_tool
 from affcli.lab.filming import FRAME_RATE
 from affcli.lab.learning import learn
-from affcli.lab.replaying import CLOSE, Replay, replay_run, replay_trial
+from affcli.lab.replaying import CLOSE, replay_run, replay_trial
 from affcli.lab.reproduction import reproduce
 from affcli.lab.solving import solve
 from affcli.store import LearningRunInfo, Store, open_store
@@ -64,7 +65,7 @@ def test_a_trial_seen_through_the_camera(store: Store, run: LearningRunInfo) -> 
     """A trial through another sensor than the run's is done again through that sensor."""
     counted(solve(store, [run], 4, [3], 0, now, "camera"))
     replay = replay_trial(store, 1)
-    assert replay.trial.spec.sensor == "camera"
+    assert replay.spec.sensor == "camera"
     assert replay.differences == ()
 
 
@@ -131,7 +132,7 @@ def test_the_row_chosen_comes_first_among_those_considered(replay: Replay) -> No
         record = one.step.record
         assert one.considered[0].row == record.row
         assert len(one.considered) == min(CLOSE, record.survivors.nearest)
-        travels = [each.weighed.repositioning for each in one.considered]
+        travels = [each.repositioning for each in one.considered]
         assert travels == sorted(travels)
         if record.placing.status is ExecutionStatus.DONE:
             start, end = record.placing.wrist_start, record.placing.wrist_end

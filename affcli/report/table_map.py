@@ -1,0 +1,165 @@
+"""The table as a picture made of letters: braille dots, or plain letters where there are none."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.style import Style
+from rich.text import Text
+
+from affcli.core.geometry import ConvexPolygon, Point
+from affcli.core.scene import Scene
+from affcli.core.workspace import Workspace
+
+Coordinates = NDArray[np.float64]
+Inside = Callable[[Coordinates, Coordinates], NDArray[np.bool_]]
+"""Tells for the middle of each dot, x and y in inches, whether a thing covers it."""
+
+DOTS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]])
+"""Bits of a braille letter by row and column of its dots (Unicode, block 2800)."""
+ACROSS, DOWN = 2, 4
+"""Dots in a letter."""
+MARGIN = 1.0
+"""Inches shown beyond the table, and nearer to the robot than its wrist can be."""
+
+
+class Layer(NamedTuple):
+    """One kind of thing on the map.
+
+    Args:
+        letter: shown where there are no braille letters.
+        style: its colour on a terminal that has some.
+    """
+
+    letter: str
+    style: Style
+
+
+EDGE = Layer(".", Style(dim=True))
+GOAL = Layer("+", Style(color="cyan"))
+PATH = Layer(":", Style(color="yellow"))
+TOOL = Layer("#", Style(color="green", bold=True))
+PUCK = Layer("o", Style(color="bright_red", bold=True))
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """What part of the table is shown, and how finely.
+
+    Args:
+        left, top: the upper left corner (in, table frame).
+        inches: from one dot to the next.
+        columns, rows: size in letters.
+    """
+
+    left: float
+    top: float
+    inches: float
+    columns: int
+    rows: int
+
+    @classmethod
+    def of(cls, workspace: Workspace, columns: int, rows: int) -> "View":
+        """Return the view of the whole table and the arm's reach that fits into so many letters."""
+        table = workspace.table
+        half = table.half_width + MARGIN
+        near, far = min(table.near, 4.0) - MARGIN, table.far + MARGIN
+        inches = max(2.0 * half / (ACROSS * columns), (far - near) / (DOWN * rows))
+        used = min(rows, int(np.ceil((far - near) / inches / DOWN)))
+        across = min(columns, int(np.ceil(2.0 * half / inches / ACROSS)))
+        return cls(-0.5 * across * ACROSS * inches, far, inches, across, used)
+
+    def places(self) -> tuple[Coordinates, Coordinates]:
+        """Return x and y of the middle of each dot, (rows * 4, columns * 2) each (in)."""
+        x = self.left + self.inches * (np.arange(self.columns * ACROSS) + 0.5)
+        y = self.top - self.inches * (np.arange(self.rows * DOWN) + 0.5)
+        across, down = np.meshgrid(x, y)
+        return across, down
+
+
+def table_map(
+    scene: Scene, workspace: Workspace, path: list[Point], view: View, *, braille: bool
+) -> Text:
+    """Return what is on the table as lines of letters, the robot at the lower edge.
+
+    Args:
+        scene: what is on it.
+        workspace: its sizes.
+        path: where the attractor has been (in, table frame).
+        view: what to show.
+        braille: with braille letters, eight dots each; without, one letter for each thing.
+    """
+    x, y = view.places()
+    layers: list[tuple[Layer, NDArray[np.bool_]]] = []
+    table = workspace.table
+    line = 0.6 * view.inches
+    edge = _frame(-table.half_width, table.near, table.half_width, table.far, line)
+    layers.append((EDGE, edge(x, y)))
+    if scene.goal is not None:
+        (gx, gy), half = scene.goal.center, scene.goal.half_width
+        layers.append((GOAL, _frame(gx - half, gy - half, gx + half, gy + half, line)(x, y)))
+    been = np.zeros(x.shape, bool)
+    for place in path:
+        been |= np.hypot(x - place.x, y - place.y) < 0.8 * view.inches
+    layers.append((PATH, been))
+    held = np.zeros(x.shape, bool)
+    for part in scene.tool.outlines:
+        held |= _polygon(part, scene.wrist, line)(x, y)
+    if scene.lift > 0.0:
+        # A tool in the air hides nothing: every other dot.
+        rows, columns = np.indices(x.shape)
+        held &= (rows + columns) % 2 == 0
+    layers.append((TOOL, held))
+    center = scene.attractor
+    layers.append((PUCK, np.hypot(x - center.x, y - center.y) <= workspace.puck.radius))
+    return _letters(layers, view, braille=braille)
+
+
+def _letters(layers: list[tuple[Layer, NDArray[np.bool_]]], view: View, *, braille: bool) -> Text:
+    """Return the letters of all cells, each in the style of the uppermost thing in it."""
+    shape = (view.rows, DOWN, view.columns, ACROSS)
+    bits = np.zeros((view.rows, view.columns), int)
+    uppermost = np.full((view.rows, view.columns), -1)
+    for number, (_, covered) in enumerate(layers):
+        dots = covered.reshape(shape).transpose(0, 2, 1, 3)
+        bits |= (dots * DOTS).sum(axis=(2, 3))
+        uppermost[dots.any(axis=(2, 3))] = number
+    text = Text(no_wrap=True)
+    for row in range(view.rows):
+        for column in range(view.columns):
+            number = uppermost[row, column]
+            if number < 0:
+                text.append(" ")
+                continue
+            layer = layers[number][0]
+            text.append(chr(0x2800 + bits[row, column]) if braille else layer.letter, layer.style)
+        if row + 1 < view.rows:
+            text.append("\n")
+    return text
+
+
+def _frame(left: float, bottom: float, right: float, top: float, line: float) -> Inside:
+    """Return what tells the outline of a box."""
+
+    def inside(x: Coordinates, y: Coordinates) -> NDArray[np.bool_]:
+        dx = np.abs(x - 0.5 * (left + right)) - 0.5 * (right - left)
+        dy = np.abs(y - 0.5 * (bottom + top)) - 0.5 * (top - bottom)
+        return np.abs(np.maximum(dx, dy)) < line
+
+    return inside
+
+
+def _polygon(part: ConvexPolygon, at: Point, line: float) -> Inside:
+    """Return what tells a convex part of a tool, drawn no thinner than a dot."""
+
+    def inside(x: Coordinates, y: Coordinates) -> NDArray[np.bool_]:
+        within = np.ones(x.shape, bool)
+        for a, b in part.edges:
+            ex, ey = b.x - a.x, b.y - a.y
+            cross = ex * (y - at.y - a.y) - ey * (x - at.x - a.x)
+            within &= cross >= -0.5 * line * np.hypot(ex, ey)
+        return within
+
+    return inside
