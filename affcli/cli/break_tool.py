@@ -15,7 +15,7 @@ from affcli.cli.options import (
     checked_tool,
 )
 from affcli.cli.solve import learned_runs
-from affcli.cli.terminal import now, progress, show, show_json
+from affcli.cli.terminal import now, progress, say_trials, show, show_json
 from affcli.errors import UsageError
 
 
@@ -52,12 +52,19 @@ def break_tool(
     with open_store(database, create=False, write=True) as store:
         (run,) = learned_runs(store, tool, database)
         with progress(f"{tool} becomes {becomes}", 32) as bar:
-            trials = []
-            for trial in break_trials(store, run, becomes, seed, now, kind):
+            numbers, trials = [], []
+            for number, trial in break_trials(store, run, becomes, seed, now, kind):
+                numbers.append(number)
                 trials.append(trial)
                 bar.update(len(trials), f"{len(trials)} of 32 trials")
     side = missing_side(settings_from_json(run.spec.settings), tool, becomes)
     if as_json:
-        show_json({"run": run.id, **broken_json(becomes, side, trials)})
+        show_json({"run": run.id, "trials": numbers, **broken_json(becomes, side, trials)})
     else:
         show(*broken_tables(becomes, side, trials))
+    tried_in_vain = [
+        number
+        for number, trial in zip(numbers, trials, strict=True)
+        if any(step.lost for step in trial.steps)
+    ]
+    say_trials(numbers, (tried_in_vain or numbers)[0])

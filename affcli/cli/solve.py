@@ -16,7 +16,7 @@ from affcli.cli.options import (
     checked_starts,
     checked_tool,
 )
-from affcli.cli.terminal import now, show, show_json
+from affcli.cli.terminal import now, say_trials, show, show_json
 from affcli.core.tool import TOOL_PARTS
 from affcli.errors import UsageError
 
@@ -69,7 +69,7 @@ def solve(
     from affcli.store import open_store
 
     trials: list[SolvedTrial] = []
-    steps: list[list[StepRecord]] = [[]]
+    steps: list[list[tuple[int, StepRecord]]] = [[]]
     with open_store(database, create=False, write=True) as store:
         runs = learned_runs(store, tool, database)
         regions = {
@@ -80,7 +80,7 @@ def solve(
         }
         for event in solve_trials(store, runs, goal, starts, seed, now, kind):
             if isinstance(event, SolvedStep):
-                steps[-1].append(event.record)
+                steps[-1].append((event.row, event.record))
                 continue
             trials.append(event)
             steps.append([])
@@ -96,6 +96,8 @@ def solve(
         )
     else:
         show(solve_table(goal, [(t.trial, t.end) for t in trials], used))
+    numbers = [trial.id for trial in trials]
+    say_trials(numbers, numbers[-1])
     return 0 if len(starts) > 1 or all(t.solved for t in trials) else 1
 
 
@@ -120,7 +122,7 @@ def learned_runs(store: "Store", tool: str | None, database: "Path") -> list["Le
 def _as_json(
     runs: dict[str, int],
     trial: "SolvedTrial",
-    steps: list["StepRecord"],
+    steps: list[tuple[int, "StepRecord"]],
     goal: "GoalRegion | None",
 ) -> dict[str, Any]:
     """Return one trial as JSON types; with its steps when the goal is given to explain them by."""
@@ -128,6 +130,7 @@ def _as_json(
 
     spec, end = trial.trial, trial.end
     value: dict[str, Any] = {
+        "trial": trial.id,
         "run": runs[spec.tool],
         "sensor": spec.sensor,
         "tool": spec.tool,
@@ -143,7 +146,7 @@ def _as_json(
         value["explain"] = [
             {
                 "step": record.number,
-                "row": record.row.step,
+                "row": row,
                 "behavior": str(record.row.exploratory),
                 "rows_left": record.survivors._asdict(),
                 "placing": record.placing.status.value,
@@ -154,6 +157,6 @@ def _as_json(
                 "probability_before": record.row.replication_probability,
                 "probability_after": record.times_successful_after / record.times_used_after,
             }
-            for record in steps
+            for row, record in steps
         ]
     return value

@@ -19,7 +19,7 @@ def break_tool(
     seed: int,
     now: Callable[[], str],
     sensor: SensorKind | None = None,
-) -> Iterator[TrialRecord]:
+) -> Iterator[tuple[int, TrialRecord]]:
     """Do the 16 trials with the broken tool, and the same 16 with the whole one beside them.
 
     Each trial starts from the table as learned and keeps its counters in its own steps; the stored
@@ -34,7 +34,7 @@ def break_tool(
         sensor: through what the robot sees; None for what it learned with.
 
     Yields:
-        Each trial once it is saved, the broken tool's first.
+        Each trial with its number in the store, once it is saved; the broken tool's first.
     """
     settings = with_sensor(settings_from_json(run.spec.settings), sensor)
     # A camera that is not there, or cannot be calibrated, is found before anything is recorded.
@@ -52,6 +52,6 @@ def break_tool(
     ):
         for spec in trial_specs(protocol, tool, held, seed, robot, kind):
             trial = whole_trial(spec, settings, table, world, judge)
-            store.save_trials(session, run.id, [trial], ids)
-            yield trial
+            (number,) = store.save_trials(session, run.id, [trial], ids)
+            yield number, trial
     store.finish_session(session, now())

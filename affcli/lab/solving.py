@@ -15,16 +15,30 @@ from affcli.store import LearningRunInfo, Store
 
 @dataclass(frozen=True, slots=True)
 class SolvedStep:
-    """One step of a trial, just saved."""
+    """One step of a trial, just saved.
+
+    Args:
+        trial: which.
+        record: the step.
+        row: the number of the row tried in the store.
+    """
 
     trial: TrialSpec
     record: StepRecord
+    row: int
 
 
 @dataclass(frozen=True, slots=True)
 class SolvedTrial:
-    """A trial that ended, just saved."""
+    """A trial that ended, just saved.
 
+    Args:
+        id: its number in the store.
+        trial: which it is.
+        end: how it ended.
+    """
+
+    id: int
     trial: TrialSpec
     end: TrialEnd
 
@@ -84,8 +98,9 @@ def solve(
             trial = store.begin_trial(session, run.id, spec, calibration)
             steps = Ended(run_trial(spec, settings, table, world))
             for record, truth in steps:
-                store.save_step(trial, spec, record, truth, ids[record.row.step])
-                yield SolvedStep(spec, record)
+                row = ids[record.row.step]
+                store.save_step(trial, spec, record, truth, row)
+                yield SolvedStep(spec, record, row)
             store.end_trial(trial, steps.end)
-            yield SolvedTrial(spec, steps.end)
+            yield SolvedTrial(trial, spec, steps.end)
     store.finish_session(session, now())

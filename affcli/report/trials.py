@@ -17,18 +17,23 @@ from affcli.report.sheet import Sheet
 
 
 def explain_trial(
-    spec: TrialSpec, end: TrialEnd, steps: Sequence[StepRecord], goal: GoalRegion
+    spec: TrialSpec, end: TrialEnd, steps: Sequence[tuple[int, StepRecord]], goal: GoalRegion
 ) -> RenderableType:
-    """Return how a trial ended, and step by step why each row was chosen and what came of it."""
+    """Return how a trial ended, and step by step why each row was chosen and what came of it.
+
+    Args:
+        spec: which trial.
+        end: how it ended.
+        steps: each with the number of its row in the store.
+        goal: of the trial.
+    """
     solved = end.outcome is Outcome.SOLVED
     head = Text(f"{spec.tool}, goal {spec.goal}, start {spec.start}: ")
     head.append(end.outcome.value, style="green" if solved else "red")
     head.append(f" ({end.steps} step{'s' if end.steps != 1 else ''})")
     lines: list[RenderableType] = [head]
-    for step in steps:
-        lines.append(
-            _indented(2, f"step {step.number}: row {step.row.step}, {step.row.exploratory}")
-        )
+    for row, step in steps:
+        lines.append(_indented(2, f"step {step.number}: row {row}, {step.row.exploratory}"))
         lines += [_indented(4, line) for line in step_lines(step, goal)]
     if end.last_survivors is not None:
         lines.append(_indented(2, f"rows left: {_survivors(end.last_survivors)}"))

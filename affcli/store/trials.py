@@ -177,7 +177,7 @@ class Trials(Connected):
         run_id: int,
         trials: Sequence[TrialRecord],
         affordance_ids: Mapping[int, int],
-    ) -> None:
+    ) -> list[int]:
         """Save whole trials that started from the table as learned, in one transaction.
 
         Args:
@@ -185,10 +185,13 @@ class Trials(Connected):
             run_id: the learning run whose table they started from.
             trials: from beginning to end.
             affordance_ids: of each row of that table by its learning step.
+
+        Returns:
+            Their numbers in the store.
         """
         with self.writing() as connection:
             packed = [pack_trial(record) for record in trials]
-            _insert_trials(connection, session_id, run_id, packed, affordance_ids)
+            return _insert_trials(connection, session_id, run_id, packed, affordance_ids)
 
     def saved_robots(self, session_id: int) -> frozenset[int]:
         """Return the numbers of the robots that a reproduction has saved already."""
@@ -266,17 +269,20 @@ def _insert_trials(
     run_id: int,
     trials: Sequence[PackedTrial],
     affordance_ids: Mapping[int, int],
-) -> None:
-    """Insert trials with their steps."""
+) -> list[int]:
+    """Insert trials with their steps; return the trials' numbers."""
+    numbers: list[int] = []
     steps: list[tuple[object, ...]] = []
     for packed in trials:
         row = packed.row._replace(session_id=session_id, learning_run_id=run_id)
         trial_id = insert_one(connection, trial, row)
+        numbers.append(trial_id)
         steps += [
             (trial_id, affordance_ids[tried], *row)
             for tried, row in zip(packed.tried, packed.steps, strict=True)
         ]
     insert_many(connection, step, steps)
+    return numbers
 
 
 def _affordance_ids(connection: sa.Connection, run_id: int) -> dict[int, int]:

@@ -21,17 +21,19 @@ def test_all_starts_and_all_learned_tools_by_default(learned: Path) -> None:
         (tool, 2, start) for tool in tools for start in (1, 2, 3, 4)
     ]
     for trial in trials:
-        which = {"run", "sensor", "tool", "goal", "start"}
+        which = {"trial", "run", "sensor", "tool", "goal", "start"}
         assert trial.keys() == {*which, "outcome", "steps", "robot_seconds"}
     columns = "learning_run_id, sensor, tool, goal, start"
     stored = f"SELECT {columns}, outcome, steps, robot_seconds FROM trial ORDER BY id"
-    assert [tuple(trial.values()) for trial in trials] == rows(learned, stored)
+    assert [tuple(trial.values())[1:] for trial in trials] == rows(learned, stored)
+    assert [trial["trial"] for trial in trials] == list(range(1, len(trials) + 1))
     assert rows(learned, "SELECT kind, status FROM session") == [("solve", "done")]
 
 
 def test_the_table_says_how_each_trial_ended(learned: Path) -> None:
     ended = done("solve", "--goal", "1", "--tool", "stick", "--db", learned)
-    assert ended.err == ""
+    saved = "trials 1 to 4 saved; to see why each row was chosen: affcli replay 4"
+    assert ended.err.strip() == saved
     title, headings, _, *table, caption = ended.out.splitlines()
     assert title == "Goal 1: outcome (steps) by start"
     starts = [word for number in "1234" for word in ("start", number)]
@@ -44,7 +46,8 @@ def test_the_table_says_how_each_trial_ended(learned: Path) -> None:
 def test_a_single_start_that_fails_is_exit_1(learned: Path) -> None:
     """The stick cannot pull, so it never brings the attractor to goal 1, nearer to the robot."""
     ended = affcli("solve", "--goal", "1", "--tool", "stick", "--start", "1", "--db", learned)
-    assert (ended.code, ended.err) == (1, "")
+    saved = "trial 1 saved; to see why each row was chosen: affcli replay 1\n"
+    assert (ended.code, ended.err) == (1, saved)
     assert "0/1" in ended.out
     assert done("solve", "--goal", "1", "--tool", "stick", "--db", learned).out.count("0/4") == 2
 

@@ -19,7 +19,7 @@ def run(store: Store) -> LearningRunInfo:
 
 
 def broken(store: Store, run: LearningRunInfo) -> list[TrialRecord]:
-    return list(break_tool(store, run, "l-hook", 0, now))
+    return [trial for _, trial in break_tool(store, run, "l-hook", 0, now)]
 
 
 def test_sixteen_trials_with_the_broken_tool_and_then_the_same_with_the_whole_one(

@@ -62,7 +62,10 @@ TABLES: dict[str, tuple[RenderableType, ...]] = {
     "solve, one start": (solve_table(3, SOLVE[5:6], {"stick": 2, "t-hook": 7}),),
     "explain": (
         explain_trial(
-            EXPLAINED.spec, EXPLAINED.end, [step.record for step in EXPLAINED.steps], GOAL
+            EXPLAINED.spec,
+            EXPLAINED.end,
+            [(step.record.row.step, step.record) for step in EXPLAINED.steps],
+            GOAL,
         ),
     ),
     "counts": (counts_table(OVERVIEW.solved),),
