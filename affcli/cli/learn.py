@@ -10,6 +10,7 @@ from affcli.cli.options import (
     AsJson,
     Config,
     Database,
+    Resume,
     Seed,
     Sensor,
     checked_count,
@@ -43,19 +44,23 @@ def learn(
     ] = None,
     seed: Seed = 0,
     sensor: Sensor = None,
+    resume: Resume = False,
     database: Database = DEFAULT_DATABASE,
     config: Config = None,
     as_json: AsJson = False,
 ) -> None:
     """Let a robot babble with a tool and fill its affordance table.
 
-    The same command again says that the run is done; after an interruption it goes on.
+    The same command again says that the run is done; after an interruption it goes on, as does
+    --resume alone.
     """
     if all_tools and tool:
         raise UsageError("give --tool or --all-tools, not both")
     names = list(TOOL_PARTS) if all_tools else checked_tools(tool or ())
-    if not names:
+    if not names and not resume:
         raise UsageError(f"which tool? give --tool {'|'.join(TOOL_PARTS)}, or --all-tools")
+    if not names and (hours, behaviors, seed, sensor, config) != (None, None, 0, None, None):
+        raise UsageError("--resume alone: an interrupted run has its own hours, seed and settings")
     if hours is not None and behaviors is not None:
         raise UsageError("give --hours or --behaviors, not both")
     if behaviors is not None:
@@ -75,7 +80,11 @@ def learn(
     require_sensor(settings)
     text = settings.to_json()
     specs = [LearningSpec(name, seed, 0, hours, behaviors, text) for name in names]
-    with open_store(database, create=True, write=True) as store:
+    with open_store(database, create=bool(names), write=True) as store:
+        if not names:
+            specs = [run.spec for run in store.learning_runs(status="running")]
+            if not specs:
+                raise UsageError(f"nothing to resume in {database}; learn a tool: --tool t-hook")
         results = [_learn(store, spec) for spec in specs]
         groups = [store.behavior_groups(learned.info.id) for learned in results]
     if as_json:

@@ -69,7 +69,9 @@ def main() -> int:
         # After a signal this may be another exception than ours: sqlite3 forgets what is raised in
         # its callbacks, and SQLAlchemy closes the connection that a signal interrupts.
         if stop.signum is not None:
-            goes_on = ", and the same command goes on from there" if _command() in GO_ON else ""
+            goes_on = ""
+            if _command() in GO_ON:
+                goes_on = ", and the same command goes on from there (or: --resume)"
             return _fail(f"stopped; what was saved is kept{goes_on}", 128 + stop.signum)
         if isinstance(error, AffcliError):
             return _fail(str(error), error.exit_code)

@@ -39,6 +39,10 @@ Config = Annotated[
     ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Write over existing files.")]
+Resume = Annotated[
+    bool,
+    typer.Option("--resume", help="Go on with what was interrupted; alone, with all of it."),
+]
 Sensor = Annotated[
     str | None,
     typer.Option("--sensor", help="noisy (the default), exact or camera.", metavar="KIND"),

@@ -12,6 +12,7 @@ from affcli.cli.options import (
     AsJson,
     Config,
     Database,
+    Resume,
     Seed,
     Sensor,
     checked_count,
@@ -20,12 +21,17 @@ from affcli.cli.options import (
 )
 from affcli.cli.terminal import now, progress, say, show, show_json
 
+FEW_ROBOTS = 20
+
 
 def reproduce(
     *,
-    robots: Annotated[int, typer.Option("--robots", help="How many robots.", metavar="N")] = 20,
+    robots: Annotated[
+        int | None, typer.Option("--robots", help="How many robots; 20 if not given.", metavar="N")
+    ] = None,
     seed: Seed = 0,
     sensor: Sensor = None,
+    resume: Resume = False,
     workers: Annotated[
         int | None,
         typer.Option("--workers", help="Processes; one a core if not given.", metavar="N"),
@@ -37,8 +43,11 @@ def reproduce(
     """Let many robots learn the five tools and do the paper's 80 + 16 trials; compare.
 
     The result is the same for any number of workers. An interrupted reproduction goes on when the
-    same command is given again.
+    same command is given again, as does the latest one with --resume alone.
     """
+    own = (robots, seed, sensor, config) != (None, 0, None, None)
+    if robots is None:
+        robots = FEW_ROBOTS
     checked_count("--robots", robots, MOST_ROBOTS)
     checked_seed(seed)
     kind = checked_sensor(sensor)
@@ -46,7 +55,7 @@ def reproduce(
         workers = min(len(os.sched_getaffinity(0)), MOST_WORKERS) if _has_affinity() else 1
     checked_count("--workers", workers, MOST_WORKERS)
 
-    from affcli.config import load_settings, with_sensor
+    from affcli.config import load_settings, settings_from_json, with_sensor
     from affcli.lab.overview import reproduction_of
     from affcli.lab.reproduction import reproduce as run_reproduction
     from affcli.lab.sensing import require_sensor
@@ -56,6 +65,12 @@ def reproduce(
     settings = with_sensor(load_settings(config), kind)
     require_sensor(settings)
     with open_store(database, create=True, write=True) as store:
+        if resume and not own:
+            begun = [s for s in store.sessions("reproduce") if s.status == "running"]
+            if begun:
+                settings = settings_from_json(begun[-1].settings)
+                robots, seed = begun[-1].robots, begun[-1].seed
+                require_sensor(settings)
         events = run_reproduction(store, settings, robots, seed, workers, now)
         session = next(events)
         with progress("reproducing", robots) as bar:

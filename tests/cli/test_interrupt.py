@@ -12,6 +12,7 @@ import pytest
 
 from tests.cli.program import (
     Ended,
+    affcli,
     contents,
     done,
     ending,
@@ -22,7 +23,10 @@ from tests.cli.program import (
 )
 
 LONG = ("learn", "--tool", "stick", "--behaviors", "7000")
-GOES_ON = "affcli: stopped; what was saved is kept, and the same command goes on from there\n"
+GOES_ON = (
+    "affcli: stopped; what was saved is kept, and the same command goes on from there "
+    "(or: --resume)\n"
+)
 SOON = 10.0
 """Seconds: five times what a person is promised."""
 
@@ -83,6 +87,54 @@ def test_learning_goes_on_after_whatever_stopped_it(tmp_path: Path) -> None:
     assert contents(database) == contents(alone)
 
 
+def test_resume_alone_goes_on_with_every_interrupted_run(tmp_path: Path) -> None:
+    """Each with its own seed, length and settings, which need not be given again."""
+    database, alone = tmp_path / "my.db", tmp_path / "alone.db"
+    config = tmp_path / "quick.toml"
+    config.write_text("[sensor]\nposition_noise = 0.02\n")
+    runs = (LONG, (*LONG, "--seed", "5", "--config", config))
+    for number, command in enumerate(runs, 1):
+        process = started(*command, "--db", database)
+        wait_until(more_than(number - 1, partial(begun, database)), process)
+        process.kill()
+        ending(process)
+    ended = done("learn", "--resume", "--db", database)
+    assert [line.split(":")[0] for line in ended.err.splitlines()] == [
+        "learned stick (run 1, seed 0)",
+        "learned stick (run 2, seed 5)",
+    ]
+    for command in runs:
+        done(*command, "--db", alone)
+    assert by_key(database) == by_key(alone)
+
+
+def by_key(database: Path) -> dict[str, list[tuple[object, ...]]]:
+    """Return what is in a database by run and step: interleaved runs number rows otherwise."""
+    found = contents(database)
+    found["affordance"] = sorted(row[1:] for row in found["affordance"])
+    return found
+
+
+def begun(database: Path) -> int:
+    """Return how many learning runs have saved behaviors."""
+    return count(database, "SELECT count(*) FROM learning_run WHERE behaviors > 0")
+
+
+def test_resume_with_nothing_to_resume_starts_fresh(tmp_path: Path, leisurely: Path) -> None:
+    database, again = tmp_path / "my.db", tmp_path / "again.db"
+    learn = ("learn", "--tool", "stick", "--behaviors", "30")
+    assert done(*learn, "--resume", "--db", database).err.startswith("learned stick")
+    done(*learn, "--db", again)
+    assert contents(database) == contents(again)
+    ended = affcli("learn", "--resume", "--db", database)
+    assert (ended.code, "nothing to resume in" in ended.err) == (2, True)
+    ended = affcli("learn", "--resume", "--seed", "3", "--db", database)
+    assert (ended.code, "its own hours, seed and settings" in ended.err) == (2, True)
+    missing = tmp_path / "missing.db"
+    assert affcli("learn", "--resume", "--db", missing).code == 3
+    assert not missing.exists()
+
+
 @pytest.mark.parametrize(("signum", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_stopped_while_it_starts_it_is_one_line_too(
     signum: signal.Signals, code: int, tmp_path: Path
@@ -122,6 +174,8 @@ def test_a_stopped_reproduction_goes_on(leisurely: Path, tmp_path: Path, reprodu
     process.kill()
     ending(process)
     assert rows(database, "PRAGMA integrity_check") == [("ok",)]
+    if rows(database, "SELECT status FROM session") == [("running",)]:
+        done("reproduce", "--resume", "--workers", "1", "--db", database)
     done(*command, "--workers", "1")
     assert contents(database) == contents(reproduced)
 
