@@ -27,10 +27,13 @@ if TYPE_CHECKING:
         TrialResult,
     )
     from affcli.store.scenes import StepScene
+    from affcli.store.selection import Column, Comparison, Relation, RowFilter
     from affcli.store.trials import SessionInfo, SessionKind
 
 __all__ = [
     "BehaviorGroup",
+    "Column",
+    "Comparison",
     "DatabaseInfo",
     "Fact",
     "Finding",
@@ -39,6 +42,8 @@ __all__ = [
     "OutcomeCount",
     "PackedRobot",
     "QueryResult",
+    "Relation",
+    "RowFilter",
     "RowUse",
     "SessionInfo",
     "SessionKind",
@@ -75,6 +80,7 @@ _HOMES = {
         *("BehaviorGroup", "OutcomeCount", "RowUse", "StoredStep", "SuccessCount", "TrialResult"),
     ),
     "scenes": ("StepScene",),
+    "selection": ("Column", "Comparison", "Relation", "RowFilter"),
     "trials": ("SessionInfo", "SessionKind"),
 }
 """Which file each public name lives in."""

@@ -36,6 +36,9 @@ REMEDIES = {
 }
 """By SQLite's result code. What is not listed is a bug and keeps its traceback."""
 
+NO_TEXT = "Could not decode to UTF-8"
+"""What Python's driver says, without a code, of text that is not in UTF-8."""
+
 
 def result_code(error: BaseException) -> int:
     """Return SQLite's result code of an error of sqlite3 or SQLAlchemy, 0 of all others."""
@@ -64,6 +67,11 @@ def faults_named(path: Path, waited: float) -> Iterator[None]:
             raise DatabaseError(
                 f"{one_line(path)}: locked for more than {waited:g} s by {_lock_holder(path)}; "
                 "wait until it is done, then run the command again"
+            ) from error
+        if str(getattr(error, "orig", error)).startswith(NO_TEXT):
+            raise DatabaseError(
+                f"{one_line(path)}: holds text that is none and that affcli did not write; restore "
+                "a copy of the file"
             ) from error
         remedy = REMEDIES.get(code) or REMEDIES.get(code & PRIMARY)
         if remedy is not None:

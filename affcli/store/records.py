@@ -80,14 +80,14 @@ class Records(Connected):
         Raises:
             UsageError: there is none of that number; the message says which there are.
         """
-        return _stored_row(self._numbered(affordance, "affordance", row_id))
+        return stored_row(self._numbered(affordance, "affordance", row_id))
 
     def affordances(self, run_id: int) -> tuple[StoredRow, ...]:
         """Return the rows of a learning run, oldest first."""
         wanted = sa.select(affordance).filter_by(learning_run_id=run_id)
         with self.reading() as connection:
             rows = connection.execute(wanted.order_by(affordance.c.step)).mappings().all()
-        return tuple(map(_stored_row, rows))
+        return tuple(map(stored_row, rows))
 
     def trial(self, trial_id: int) -> TrialInfo:
         """Return a testing trial.
@@ -143,7 +143,7 @@ class Records(Connected):
         return row
 
 
-def _stored_row(row: sa.RowMapping) -> StoredRow:
+def stored_row(row: sa.RowMapping) -> StoredRow:
     """Return a row of an affordance table from its columns."""
     with reading_what_was_written(f"affordance {row['id']}"):
         return StoredRow(

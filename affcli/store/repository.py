@@ -5,10 +5,11 @@ from affcli.store.learning import LearningRuns
 from affcli.store.records import Records
 from affcli.store.results import Results
 from affcli.store.scenes import Scenes
+from affcli.store.selection import Selections
 from affcli.store.trials import Trials
 
 
-class Store(LearningRuns, Trials, Records, Results, Scenes, Comparing):
+class Store(LearningRuns, Trials, Records, Results, Scenes, Comparing, Selections):
     """An open database: learning runs, trials, and results for reports.
 
     Every method is one transaction and returns plain values; no row or connection leaves the store.

@@ -265,17 +265,25 @@ class Results(Connected):
 
     def trial_steps(self, trial_id: int) -> tuple[StoredStep, ...]:
         """Return the steps of a trial with the rows they tried."""
+        return self._steps(step.c.trial_id == trial_id, f"trial {trial_id}")
+
+    def row_steps(self, row_id: int) -> tuple[StoredStep, ...]:
+        """Return the steps that tried a row of an affordance table, by trial and number."""
+        return self._steps(step.c.affordance_id == row_id, f"a step that tried affordance {row_id}")
+
+    def _steps(self, condition: sa.ColumnElement[bool], which: str) -> tuple[StoredStep, ...]:
+        """Return the steps for which the condition holds, by trial and number."""
         # Both tables say where the attractor was: those of the step get a prefix.
         own = [column.label(f"step_{column.name}") for column in step.columns]
         wanted = (
             sa.select(*own, affordance)
             .select_from(step.join(affordance, affordance.c.id == step.c.affordance_id))
-            .where(step.c.trial_id == trial_id)
-            .order_by(step.c.number)
+            .where(condition)
+            .order_by(step.c.trial_id, step.c.number)
         )
         with self.reading() as connection:
             rows = connection.execute(wanted).mappings().all()
-        with reading_what_was_written(f"trial {trial_id}"):
+        with reading_what_was_written(which):
             return tuple(map(_stored_step, rows))
 
     def row_uses(

@@ -24,4 +24,10 @@ affordance = _table("affordance", "id", *AFFORDANCE_COLUMNS)
 trial = _table("trial", "id", *TrialRow._fields)
 step = _table("step", *StepRow._fields)
 
+# Of the view those columns that rows are chosen by.
+wide = _table(
+    "affordance_wide",
+    *("id", "run", "exploratory_behavior", "exploratory_params", "replication_probability"),
+)
+
 TABLES = (session, learning_run, behavior, affordance, trial, step)

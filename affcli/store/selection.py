@@ -1,0 +1,148 @@
+"""Rows and records chosen by what they are about: to be listed, or taken out whole."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple, TypeVar
+
+import sqlalchemy as sa
+
+from affcli.core.behavior import BehaviorCall
+from affcli.store.connection import Connected
+from affcli.store.mapping import params_to_json
+from affcli.store.query import Value
+from affcli.store.records import StoredRow, stored_row
+from affcli.store.tables import affordance, behavior, learning_run, step, trial, wide
+
+Made = TypeVar("Made")
+
+Relation = Literal["rows", "behaviors", "trials", "steps"]
+"""What can be taken out: the view affordance_wide, or a table."""
+
+Comparison = Literal["<", "<=", ">", ">="]
+
+
+class Column(NamedTuple):
+    """A column by name, and of what kind its values are where they are not NULL."""
+
+    name: str
+    kind: type[int] | type[float] | type[str]
+
+
+@dataclass(frozen=True, slots=True)
+class RowFilter:
+    """Which rows of affordance tables are wanted.
+
+    Args:
+        runs: those of these learning runs; of all if None.
+        tool: those learned with this tool; with any if None.
+        behavior: those of this exploratory behavior, without parameters whatever they were.
+        probability: bounds within which the replication probability lies.
+        limit: no more than so many, the oldest; all if None.
+    """
+
+    runs: tuple[int, ...] | None = None
+    tool: str | None = None
+    behavior: BehaviorCall | None = None
+    probability: tuple[tuple[Comparison, float], ...] = ()
+    limit: int | None = None
+
+
+class Selections(Connected):
+    """The part of the store that gives what filters leave."""
+
+    def select_rows(self, wanted: RowFilter) -> tuple[StoredRow, ...]:
+        """Return the rows that the filter leaves, oldest first."""
+        ids = _rows(wanted).with_only_columns(wide.c.id)
+        rows = sa.select(affordance).where(affordance.c.id.in_(ids)).order_by(affordance.c.id)
+        with self.reading() as connection:
+            return tuple(map(stored_row, connection.execute(rows).mappings()))
+
+    def extract(
+        self,
+        what: Relation,
+        wanted: RowFilter,
+        write: Callable[[Sequence[Column], Iterator[tuple[Value, ...]]], Made],
+    ) -> Made:
+        """Return what `write` makes of all columns of what the filter leaves.
+
+        It is given the values one row after the other, as they stand in the database and of one
+        state of it: there may be more than the memory holds.
+
+        Args:
+            what: of which view or table.
+            wanted: for all but ``rows`` only its runs, tool and limit count.
+            write: makes something of the columns and their values.
+        """
+        statement, relation = _STATEMENTS[what](wanted), _RELATIONS[what]
+        with self.reading() as connection:
+            described = connection.exec_driver_sql(f"PRAGMA table_info({relation.name})").all()
+            columns = [Column(name, _kind(declared)) for _, name, declared, *_ in described]
+            return write(columns, (tuple(row) for row in connection.execute(statement)))
+
+
+def _kind(declared: str) -> type[int] | type[float] | type[str]:
+    """Return the kind of a column's values; what a view computes has no type and is a number."""
+    return {"INTEGER": int, "TEXT": str}.get(declared, float)
+
+
+def _rows(wanted: RowFilter) -> sa.Select[Any]:
+    """Select the rows of the affordance tables."""
+    c = wide.c
+    statement = _whole(wide, wanted).where(_learned_in(c.run, wanted)).order_by(c.id)
+    if wanted.behavior is not None:
+        statement = statement.where(c.exploratory_behavior == wanted.behavior.name)
+        if wanted.behavior.params:
+            params = params_to_json(wanted.behavior)
+            statement = statement.where(c.exploratory_params == params)
+    for comparison, bound in wanted.probability:
+        statement = statement.where(c.replication_probability.op(comparison)(bound))
+    return statement
+
+
+def _behaviors(wanted: RowFilter) -> sa.Select[Any]:
+    """Select the exploratory behaviors of learning."""
+    c = behavior.c
+    made = _learned_in(c.learning_run_id, wanted)
+    return _whole(behavior, wanted).where(made).order_by(c.learning_run_id, c.step)
+
+
+def _trials(wanted: RowFilter) -> sa.Select[Any]:
+    """Select the testing trials that used the tables."""
+    c = trial.c
+    return _whole(trial, wanted).where(_learned_in(c.learning_run_id, wanted)).order_by(c.id)
+
+
+def _steps(wanted: RowFilter) -> sa.Select[Any]:
+    """Select the steps of these trials."""
+    c = step.c
+    tried = sa.select(trial.c.id).where(_learned_in(trial.c.learning_run_id, wanted))
+    return _whole(step, wanted).where(c.trial_id.in_(tried)).order_by(c.trial_id, c.number)
+
+
+_STATEMENTS: dict[Relation, Callable[[RowFilter], sa.Select[Any]]] = {
+    "rows": _rows,
+    "behaviors": _behaviors,
+    "trials": _trials,
+    "steps": _steps,
+}
+_RELATIONS: dict[Relation, sa.TableClause] = {
+    "rows": wide,
+    "behaviors": behavior,
+    "trials": trial,
+    "steps": step,
+}
+
+
+def _whole(relation: sa.TableClause, wanted: RowFilter) -> sa.Select[Any]:
+    """Select all columns, also those that a later schema adds, of so many rows as are wanted."""
+    return sa.select(sa.text("*")).select_from(relation).limit(wanted.limit)
+
+
+def _learned_in(column: sa.ColumnClause[Any], wanted: RowFilter) -> sa.ColumnElement[bool]:
+    """Tell whether a column names one of the learning runs that are wanted."""
+    runs = sa.select(learning_run.c.id)
+    if wanted.runs is not None:
+        runs = runs.where(learning_run.c.id.in_(wanted.runs))
+    if wanted.tool is not None:
+        runs = runs.where(learning_run.c.tool == wanted.tool)
+    return column.in_(runs)
