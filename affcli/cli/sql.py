@@ -7,8 +7,8 @@ from typing import Annotated, Any
 import typer
 
 from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database
-from affcli.cli.terminal import say, show, show_json
-from affcli.errors import one_line
+from affcli.cli.terminal import say, show, show_json, show_text
+from affcli.errors import UsageError, one_line
 
 
 def sql(
@@ -16,12 +16,16 @@ def sql(
     *,
     database: Database = DEFAULT_DATABASE,
     as_json: AsJson = False,
+    as_csv: Annotated[bool, typer.Option("--csv", help="Write CSV to stdout.")] = False,
 ) -> None:
     """Ask the database one question in SQL.
 
     Tables: affordance, behavior, learning_run, session, trial, step; views: affordance_table,
     affordance_wide. Nothing can be written.
     """
+    if as_json and as_csv:
+        raise UsageError("give --json or --csv, not both")
+
     from affcli.store import run_sql
 
     result = run_sql(database, query)
@@ -29,6 +33,10 @@ def sql(
     if as_json:
         keys = _distinct(columns)
         show_json([dict(zip(keys, map(_plain, row), strict=True)) for row in rows])
+    elif as_csv:
+        from affcli.report.csv_table import csv_text
+
+        show_text(csv_text(_distinct(columns), rows))
     else:
         from affcli.report.sheet import Sheet
 

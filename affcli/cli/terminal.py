@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
-from affcli.errors import AffcliError
+from affcli.errors import AffcliError, one_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -66,7 +66,10 @@ def show(*renderables: "RenderableType") -> None:
 
 
 def show_text(text: str) -> None:
-    """Write text to stdout as it is."""
+    """Write text to stdout as it is; to a terminal with all escaped that might command it."""
+    if sys.stdout.isatty():
+        lines = text.replace("\r\n", "\n").split("\n")
+        text = "\n".join(one_line(line, sys.maxsize) for line in lines)
     _write(sys.stdout, text)
 
 
