@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from affcli.store import open_store
+from tests.cli.program import done
 
 CAMERA = {"cv2", "scipy", "PIL"}
 PICTURES = {"matplotlib", "jinja2", "pyarrow"}
@@ -61,7 +62,8 @@ def test_sql_imports_neither_sqlalchemy_nor_physics(empty: Path) -> None:
     heavy = {"numpy", "sqlalchemy", "pymunk", "alembic"}
     query = ("sql", "select * from affordance_table", "--db", empty)
     assert not imported_by(*query) & heavy
-    assert not imported_by(*query, "--json") & (heavy | {"rich.table"})
+    for form in ("--json", "--csv"):
+        assert not imported_by(*query, form) & (heavy | {"rich.table"})
     assert not imported_by("db", "info", "--json", "--db", empty) & heavy
 
 
@@ -72,6 +74,20 @@ def test_learning_in_an_existing_database_imports_no_alembic(empty: Path, tmp_pa
     assert "alembic" not in modules
     assert {"numpy", "pymunk", "sqlalchemy"} <= modules
     assert "rich.progress" not in modules  # there is no terminal to show it on
+
+
+def test_pyarrow_loads_only_for_parquet(empty: Path, tmp_path: Path) -> None:
+    done("learn", "--tool", "stick", "--behaviors", "20", "--db", empty)
+    for args in (
+        ("list",),
+        ("export", "--format", "json"),
+        ("export", "--out", tmp_path / "x.csv"),
+    ):
+        modules = imported_by("table", *args, "--db", empty)
+        assert not modules & {"pyarrow", "pymunk", *CAMERA}
+    assert "pyarrow" in imported_by(
+        "table", "export", "--out", tmp_path / "x.parquet", "--db", empty
+    )
 
 
 def test_the_camera_s_libraries_load_only_to_look_through_it(empty: Path) -> None:
@@ -85,4 +101,12 @@ def test_the_camera_s_libraries_load_only_to_look_through_it(empty: Path) -> Non
 
 def test_the_tests_libraries_stay_with_the_tests(empty: Path) -> None:
     modules = imported_by("report", "--db", empty)
-    assert not modules & {"pytest", "hypothesis", "scipy", "shapely", "syrupy", "matplotlib"}
+    assert not modules & {
+        "pytest",
+        "hypothesis",
+        "scipy",
+        "shapely",
+        "syrupy",
+        "matplotlib",
+        "pyarrow",
+    }

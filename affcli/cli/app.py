@@ -15,6 +15,7 @@ from affcli.cli import (
     reproduce,
     solve,
     sql,
+    table,
 )
 from affcli.cli.terminal import show_text
 
@@ -36,6 +37,7 @@ app.command("doctor")(doctor.doctor)
 app.add_typer(camera.app, name="camera")
 app.add_typer(db.app, name="db")
 app.add_typer(figure.app, name="figure")
+app.add_typer(table.app, name="table")
 
 
 @app.callback(invoke_without_command=True)

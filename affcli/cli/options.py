@@ -57,7 +57,7 @@ def checked_sensor(kind: str | None) -> SensorKind | None:
     """Return the kind of sensor asked for, None for none; UsageError when there is none such."""
     if kind is None:
         return None
-    known = _one_of("sensor", kind, SENSOR_KINDS)
+    known = one_of("sensor", kind, SENSOR_KINDS)
     return next(one for one in SENSOR_KINDS if one == known)
 
 
@@ -105,7 +105,7 @@ def checked_numbers(option: str, text: str, count: int) -> list[float]:
 
 def checked_tool(name: str) -> str:
     """Return the name of a tool; UsageError with the nearest names when there is none such."""
-    return _one_of("tool", name, list(TOOL_PARTS))
+    return one_of("tool", name, list(TOOL_PARTS))
 
 
 def checked_tools(names: Iterable[str]) -> list[str]:
@@ -116,17 +116,17 @@ def checked_tools(names: Iterable[str]) -> list[str]:
 
 def checked_goal(goal: int) -> int:
     """Return the number of a goal; UsageError when there is none such."""
-    return int(_one_of("goal", str(goal), [str(n) for n in GOAL_NUMBERS]))
+    return int(one_of("goal", str(goal), [str(n) for n in GOAL_NUMBERS]))
 
 
 def checked_starts(start: str) -> Sequence[int]:
     """Return the starts asked for: one of 1 to 4, or all."""
     if start == "all":
         return START_NUMBERS
-    return (int(_one_of("start", start, [*(str(n) for n in START_NUMBERS), "all"])),)
+    return (int(one_of("start", start, [*(str(n) for n in START_NUMBERS), "all"])),)
 
 
-def _one_of(kind: str, value: str, known: Sequence[str]) -> str:
+def one_of(kind: str, value: str, known: Sequence[str]) -> str:
     """Return `value` when it is known; else say which values are nearest."""
     if value in known:
         return value

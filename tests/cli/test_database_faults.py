@@ -16,6 +16,9 @@ READING = {
     "report --json": ("report", "--json"),
     "sql": ("sql", "select 1"),
     "db info": ("db", "info"),
+    "table list": ("table", "list"),
+    "table show": ("table", "show", "1"),
+    "table export": ("table", "export"),
 }
 WRITING_WHAT_IS_THERE = {
     "solve": ("solve", "--goal", "2"),

@@ -12,7 +12,10 @@ import pytest
 
 from tests.cli.program import ROOT, Ended, environment, names_in, one_printable_line
 
-READING = (("report",), ("sql", "select count(*) from affordance"), ("db", "info"))
+READING = (
+    *(("report",), ("sql", "select count(*) from affordance"), ("db", "info")),
+    *(("table", "list"), ("table", "show", "1"), ("table", "export")),
+)
 WRITING = (
     ("learn", "--tool", "stick", "--behaviors", "5"),
     ("solve", "--goal", "2"),

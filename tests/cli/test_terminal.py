@@ -21,6 +21,8 @@ SHOWING = {
     "explain": ("solve", "--goal", "2", "--explain"),
     "break-tool": ("break-tool",),
     "db info": ("db", "info"),
+    "table list": ("table", "list"),
+    "table show": ("table", "show", "1"),
     "sql": ("sql", "select * from affordance_wide limit 3"),
 }
 
@@ -48,6 +50,7 @@ def shell(command: str, database: Path) -> Ended:
     [
         "affcli report --db FILE | head -1",
         "affcli sql 'select * from affordance_wide' --json --db FILE | head -1",
+        "affcli table export --db FILE | head -1",
         "affcli solve --goal 1 --explain --db FILE | head -1",
         "affcli learn --tool stick --behaviors 5 --db FILE 2>&1 | true",
     ],

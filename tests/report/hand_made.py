@@ -15,7 +15,7 @@ from affcli.core.behavior import (
     ExecutionStatus,
 )
 from affcli.core.geometry import Point, Pose
-from affcli.core.observation import movement
+from affcli.core.observation import Movement, movement
 from affcli.core.trial import (
     Counters,
     LearningSpec,
@@ -58,6 +58,35 @@ class Run:
     rows: int = 97
     resets: int = 12
     robot_seconds: float = 3601.2
+    session_id: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A row of an affordance table as the store gives it."""
+
+    id: int
+    run_id: int
+    tool: str
+    row: Affordance
+
+
+@dataclass(frozen=True, slots=True)
+class Tried:
+    """A step that tried a row as the store gives it."""
+
+    trial_id: int
+    number: int
+    row: Affordance
+    placing_status: str
+    status: str | None
+    expected: Movement
+    seen: Movement
+    replicated: bool
+    died: bool
+    lost: bool | None
+    times_used_after: int
+    times_successful_after: int
 
 
 def call(name: BehaviorName, inches: float) -> BehaviorCall:
@@ -136,6 +165,29 @@ def trial(of: TrialSpec, outcome: Outcome, *steps: TrialStep, steps_taken: int =
     taken = len(steps) if steps_taken < 0 else steps_taken
     left = Survivors(97, 2, 0, 0) if outcome is Outcome.NO_ROW else None
     return TrialRecord(of, steps, TrialEnd(outcome, taken, 6.0 * taken, left))
+
+
+def tried(trial_id: int, step: TrialStep, of: TrialSpec) -> tuple[Tried, TrialSpec]:
+    """Return a step as the history of its row holds it."""
+    record = step.record
+    execution = record.execution
+    return (
+        Tried(
+            trial_id,
+            record.number,
+            record.row,
+            record.placing.status.value,
+            None if execution is None else execution.status.value,
+            record.expected,
+            record.seen,
+            record.replicated,
+            record.died,
+            step.lost,
+            record.times_used_after,
+            record.times_successful_after,
+        ),
+        of,
+    )
 
 
 BROKEN = (

@@ -4,6 +4,7 @@ After a change that was meant: ``pytest tests/report --snapshot-update``, and lo
 """
 
 import io
+from dataclasses import replace
 
 import pytest
 from rich.console import Console, RenderableType
@@ -16,7 +17,9 @@ from affcli.report.breaking import broken_tables
 from affcli.report.learning import groups_table, learned_table
 from affcli.report.overview import overview_tables
 from affcli.report.reproduction import failures_table, reproduction_tables
+from affcli.report.rows import row_tables, rows_table
 from affcli.report.trials import counts_table, explain_trial, solve_table
+from tests.factories import learning_spec
 from tests.report import hand_made
 from tests.report.hand_made import (
     BROKEN,
@@ -26,8 +29,10 @@ from tests.report.hand_made import (
     OVERVIEW,
     RUNS,
     WHOLE,
+    Row,
     row,
     spec,
+    tried,
 )
 
 SOLVED, LIMIT = Outcome.SOLVED, Outcome.STEP_LIMIT
@@ -55,6 +60,18 @@ EXPLAINED = hand_made.trial(
     hand_made.step(4, row(7, used=3, successful=3), seen=(0.0, 2.0)),
 )
 
+ROWS = [
+    (Row(9, 1, "t-hook", row(7)), "left bar"),
+    (Row(12345, 1, "t-hook", row(33, offset_x=5.04, used=12, successful=6)), "right hook"),
+    (Row(12346, 22, "\x1b[31m=cmd", row(34, offset_x=-0.04)), "handle"),
+]
+HISTORY = [
+    tried(3, hand_made.step(1, row(7)), spec(2)),
+    tried(3, hand_made.step(12, row(7, used=2, successful=2), seen=(0.1, 0.0)), spec(2)),
+    tried(19, hand_made.step(1, row(7), seen=(0.0, 0.0), lost=True), spec(2, shape="l-hook")),
+    tried(1234, hand_made.step(3, row(7), blocked=True), spec(2)),
+]
+
 TABLES: dict[str, tuple[RenderableType, ...]] = {
     "groups": (groups_table(RUNS[0], GROUPS),),
     "learned": (learned_table([(RUNS[0], "defaults"), (RUNS[1], "sensor.position_noise = 0.12")]),),
@@ -67,6 +84,13 @@ TABLES: dict[str, tuple[RenderableType, ...]] = {
             [(step.record.row.step, step.record) for step in EXPLAINED.steps],
             GOAL,
         ),
+    ),
+    "rows": (rows_table(ROWS[:2], "Rows of run 1 (t-hook)", with_runs=False),),
+    "rows of all runs": (rows_table(ROWS, "Rows of all runs", with_runs=True),),
+    "no rows": (rows_table([], "Rows of run 1 (t-hook)", with_runs=False),),
+    "one row": row_tables(*ROWS[0], RUNS[0], HISTORY),
+    "a row of a robot, never tried": row_tables(
+        *ROWS[1], replace(RUNS[0], session_id=4, spec=learning_spec(seed=1000, robot=17)), []
     ),
     "counts": (counts_table(OVERVIEW.solved),),
     "broken": broken_tables("l-hook", MISSING_SIDE, [*BROKEN, *WHOLE]),

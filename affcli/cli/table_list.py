@@ -1,0 +1,60 @@
+"""``affcli table list``: the rows of the affordance tables, filtered."""
+
+from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database
+from affcli.cli.table_choice import (
+    AllRuns,
+    Behavior,
+    Limit,
+    Probability,
+    Region,
+    Run,
+    Tool,
+    checked_choice,
+    chosen_runs,
+)
+from affcli.cli.terminal import say, show, show_json
+from affcli.errors import one_line
+
+
+def list_rows(
+    *,
+    tool: Tool = None,
+    run: Run = None,
+    all_runs: AllRuns = False,
+    behavior: Behavior = None,
+    probability: Probability = None,
+    region: Region = None,
+    limit: Limit = None,
+    database: Database = DEFAULT_DATABASE,
+    as_json: AsJson = False,
+) -> None:
+    """List rows of the affordance tables.
+
+    Of the latest finished learning run of each tool, or of --tool, unless --run or --all-runs says
+    otherwise.
+    """
+    choice = checked_choice(
+        tool=tool,
+        run=run,
+        all_runs=all_runs,
+        behavior=behavior,
+        probability=probability,
+        region=region,
+        limit=limit,
+    )
+    from affcli.lab.table import listed_rows
+    from affcli.report.rows import rows_json, rows_table
+    from affcli.store import open_store
+
+    with open_store(database, create=False, write=False) as store:
+        runs = chosen_runs(store, choice, database)
+        rows = listed_rows(store, runs, choice.filter_for(runs), region)
+    if as_json:
+        show_json(rows_json(rows))
+    else:
+        named = {one.id: f"run {one.id} ({one_line(one.spec.tool, 60)})" for one in runs}
+        words = ", ".join(named[number] for number in sorted(named))
+        title = "Rows of all runs" if all_runs else f"Rows of {words}"
+        show(rows_table(rows, title, with_runs=all_runs))
+    if not rows:
+        say("no rows")

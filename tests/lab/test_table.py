@@ -1,0 +1,138 @@
+"""Regions of rows: the part of the tool, as it was learned, nearest to the attractor."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from shapely import Point as ShapelyPoint
+from shapely import Polygon
+
+from affcli.config import Settings, settings_with
+from affcli.core.tool import TOOL_PARTS
+from affcli.errors import DatabaseError
+from affcli.lab.table import every_run, history_of, listed_rows, region_of, taken_out, tool_of
+from affcli.store import Column, LearningRunInfo, RowFilter, Store, StoredRow
+from tests.lab.quick import NOW, learned, spec_of
+from tests.store.records import SETTINGS, VERSIONS, robot_record, trial_record, trial_spec
+
+NARROW = settings_with({"tools": {"bar_reach": 3.0}}, "a test")
+"""The hooks are nearer to the handle than by default."""
+Taken = tuple[list[Column], list[tuple[Any, ...]]]
+
+
+@pytest.fixture
+def runs(store: Store) -> list[LearningRunInfo]:
+    """The same babbling twice, once believed to be done with a tool of other sizes; and a stick."""
+    found = []
+    for spec in (spec_of(), spec_of("stick")):
+        for settings in (Settings(), NARROW):
+            own = replace(spec, settings=settings.to_json())
+            run = store.begin_learning(own, VERSIONS, NOW)
+            store.append_learning(run.id, 0, learned(spec), None, 1.0, done=True, now=NOW)
+            found.append(store.learning_run(run.id))
+    return found
+
+
+def nearest_part(run: LearningRunInfo, row: StoredRow) -> str:
+    """Return the nearest part as another library finds it."""
+    place = ShapelyPoint(*row.row.start.wrist_to_object)
+    away = {
+        part.name: Polygon(part.outline.vertices).distance(place) for part in tool_of(run).parts
+    }
+    return min(away, key=lambda name: round(away[name], 9))
+
+
+def keep(columns: Sequence[Column], rows: Iterable[tuple[Any, ...]]) -> Taken:
+    """Return what is taken out as it is."""
+    return list(columns), list(rows)
+
+
+def test_the_region_is_that_of_the_tool_as_the_run_made_it(
+    store: Store, runs: list[LearningRunInfo]
+) -> None:
+    regions = {}
+    for run in runs:
+        rows = listed_rows(store, [run], RowFilter(runs=(run.id,)), None)
+        assert len(rows) > 20
+        assert [row for row, _ in rows] == list(store.affordances(run.id))
+        assert [region for _, region in rows] == [nearest_part(run, row) for row, _ in rows]
+        assert [region for _, region in rows] == [region_of(tool_of(run), row) for row, _ in rows]
+        regions[run.id] = [region for _, region in rows]
+        assert set(regions[run.id]) <= set(TOOL_PARTS[tool_of(run).name])
+    first, narrow, *sticks = regions.values()
+    assert first != narrow
+    assert {region for of_stick in sticks for region in of_stick} == {"handle"}
+
+
+@pytest.mark.parametrize("region", ["left hook", "handle", "right bar"])
+@pytest.mark.parametrize("limit", [None, 1, 3])
+def test_what_is_taken_out_is_what_is_listed(
+    region: str, limit: int | None, store: Store, runs: list[LearningRunInfo]
+) -> None:
+    """The limit counts rows of the region, not rows that were looked at."""
+    every = RowFilter(tool="t-hook")
+    rows = [one for one in listed_rows(store, runs, every, None) if one[1] == region][:limit]
+    assert rows
+    wanted = replace(every, limit=limit)
+    assert listed_rows(store, runs, wanted, region) == rows
+    (columns, taken), count = taken_out(store, "rows", runs, wanted, region, keep)
+    assert (columns[0], columns[-1]) == (("id", int), ("region", str))
+    assert [(row[0], row[-1]) for row in taken] == [(row.id, region) for row, _ in rows]
+    assert count == len(rows)
+
+
+def test_other_records_are_taken_out_without_a_region(
+    store: Store, runs: list[LearningRunInfo]
+) -> None:
+    wanted = RowFilter(runs=(runs[0].id,))
+    (columns, taken), count = taken_out(store, "behaviors", runs[:1], wanted, None, keep)
+    assert (len(taken), count) == (400, 400)
+    assert "region" not in dict(columns)
+
+
+def test_rows_of_a_run_begun_since_are_left_out(store: Store, runs: list[LearningRunInfo]) -> None:
+    """All rows are asked for, but of the run nothing else is known."""
+    known = runs[1:]
+    listed = listed_rows(store, known, RowFilter(), None)
+    assert {row.run_id for row, _ in listed} == {run.id for run in known}
+    (_, taken), count = taken_out(store, "rows", known, RowFilter(), None, keep)
+    assert [row[0] for row in taken] == [row.id for row, _ in listed]
+    assert count == len(listed)
+
+
+def test_every_run_is_there_also_unfinished_and_of_robots(
+    store: Store, runs: list[LearningRunInfo]
+) -> None:
+    begun = store.begin_learning(spec_of("l-hook"), VERSIONS, NOW)
+    session = store.begin_session("reproduce", 0, 1, SETTINGS, VERSIONS, NOW)
+    store.save_robot(session, robot_record(0), VERSIONS, NOW)
+    found = every_run(store)
+    assert [run.id for run in found] == [*(run.id for run in runs), begun.id, 6, 7]
+    assert [run.session_id for run in found] == [None] * 5 + [session] * 2
+    assert found[4].status == "running"
+
+
+def test_the_history_of_a_row_names_the_trial_of_each_step(
+    store: Store, runs: list[LearningRunInfo]
+) -> None:
+    run = runs[0]
+    table, ids = store.affordance_table(run.id)
+    specs = [
+        trial_spec(1, start, shape=shape) for start in (1, 2) for shape in ("t-hook", "l-hook")
+    ]
+    session = store.begin_session("break-tool", 0, 1, SETTINGS, VERSIONS, NOW)
+    row, other = table.row(3), table.row(4)
+    trials = [trial_record(spec, [row, other, row]) for spec in specs]
+    store.save_trials(session, run.id, trials, ids)
+    history = history_of(store, ids[row.step])
+    assert [spec for _, spec in history] == [spec for spec in specs for _ in range(2)]
+    assert [step.number for step, _ in history] == [1, 3] * 4
+    assert {step.affordance_id for step, _ in history} == {ids[row.step]}
+    assert history_of(store, ids[table.row(5).step]) == []
+
+
+def test_a_tool_that_nobody_knows_is_named(store: Store, runs: list[LearningRunInfo]) -> None:
+    spec = replace(runs[0].spec, tool="=cmd")
+    with pytest.raises(DatabaseError, match="learning run 1 holds a tool that affcli does not kn"):
+        tool_of(replace(runs[0], spec=spec))
