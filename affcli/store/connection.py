@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import sqlalchemy as sa
 from sqlalchemy.dialects import sqlite
@@ -42,6 +43,15 @@ class Connected:
             # BEGIN takes no lock; the first read does.
             self._say("SELECT 1 FROM sqlite_master")
             yield connection
+
+    def mappings(self, wanted: sa.Select[Any]) -> Sequence[sa.RowMapping]:
+        """Return all rows of one query, each by the names of its columns.
+
+        Raises:
+            DatabaseError: locked too long, or damaged.
+        """
+        with self.reading() as connection:
+            return connection.execute(wanted).mappings().all()
 
     @contextmanager
     def writing(self) -> Iterator[sa.Connection]:

@@ -167,9 +167,7 @@ class LearningRuns(Connected):
         for column, value in (("tool", tool), ("status", status)):
             if value is not None:
                 wanted = wanted.where(learning_run.c[column] == value)
-        with self.reading() as connection:
-            rows = connection.execute(wanted.order_by(learning_run.c.id)).mappings().all()
-        return tuple(map(info_from, rows))
+        return tuple(map(info_from, self.mappings(wanted.order_by(learning_run.c.id))))
 
     def latest_run(self, tool: str) -> LearningRunInfo | None:
         """Return the latest finished run of `tool` that is not part of a reproduction."""
@@ -188,9 +186,7 @@ class LearningRuns(Connected):
         Returns:
             The table; and the id of each row in the store by its learning step.
         """
-        with self.reading() as connection:
-            wanted = sa.select(affordance).filter_by(learning_run_id=run_id)
-            rows = connection.execute(wanted).mappings().all()
+        rows = self.mappings(sa.select(affordance).filter_by(learning_run_id=run_id))
         with reading_what_was_written(f"the affordance table of run {run_id}"):
             table = AffordanceTable(affordance_from(row, as_learned=as_learned) for row in rows)
         return table, {row["step"]: row["id"] for row in rows}

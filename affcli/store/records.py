@@ -85,9 +85,7 @@ class Records(Connected):
     def affordances(self, run_id: int) -> tuple[StoredRow, ...]:
         """Return the rows of a learning run, oldest first."""
         wanted = sa.select(affordance).filter_by(learning_run_id=run_id)
-        with self.reading() as connection:
-            rows = connection.execute(wanted.order_by(affordance.c.step)).mappings().all()
-        return tuple(map(stored_row, rows))
+        return tuple(map(stored_row, self.mappings(wanted.order_by(affordance.c.step))))
 
     def trial(self, trial_id: int) -> TrialInfo:
         """Return a testing trial.
@@ -128,9 +126,7 @@ class Records(Connected):
             .where(*conditions)
             .order_by(trial.c.id)
         )
-        with self.reading() as connection:
-            rows = connection.execute(wanted).mappings().all()
-        return tuple(map(_trial_info, rows))
+        return tuple(map(_trial_info, self.mappings(wanted)))
 
     def _numbered(self, table: sa.TableClause, what: str, number: int) -> sa.RowMapping:
         """Return the row of this number; UsageError that says which there are when it is not."""

@@ -222,10 +222,8 @@ class Results(Connected):
         for column, value in ((t.session_id, session_id), (s.kind, kind), (t.tool, tool)):
             if value is not None:
                 wanted = wanted.where(column == value)
-        with self.reading() as connection:
-            rows = connection.execute(wanted).mappings().all()
         with reading_what_was_written("a trial"):
-            return tuple(map(_trial_result, rows))
+            return tuple(map(_trial_result, self.mappings(wanted)))
 
     def success_counts(self, session_id: int) -> tuple[SuccessCount, ...]:
         """Return the successes of a session by robot, protocol, tool, shape and goal.
@@ -281,10 +279,8 @@ class Results(Connected):
             .where(condition)
             .order_by(step.c.trial_id, step.c.number)
         )
-        with self.reading() as connection:
-            rows = connection.execute(wanted).mappings().all()
         with reading_what_was_written(which):
-            return tuple(map(_stored_step, rows))
+            return tuple(map(_stored_step, self.mappings(wanted)))
 
     def row_uses(
         self, session_id: int, protocol: Protocol = Protocol.TOOL_ADAPTATION
@@ -315,10 +311,8 @@ class Results(Connected):
             .group_by(*row)
             .order_by(t.robot, a.id)
         )
-        with self.reading() as connection:
-            rows = connection.execute(wanted).mappings().all()
         with reading_what_was_written(f"a step of session {session_id}"):
-            return tuple(map(_row_use, rows))
+            return tuple(map(_row_use, self.mappings(wanted)))
 
     def _all(self, wanted: sa.Select[Any]) -> list[tuple[Any, ...]]:
         """Return all rows of a query."""
@@ -338,7 +332,7 @@ def _row_use(row: sa.RowMapping) -> RowUse:
         affordance_id=row["id"],
         exploratory=behavior_call(row["exploratory_behavior"], row["exploratory_params"]),
         offset=Point(row["start_wrist_to_object_x"], row["start_wrist_to_object_y"]),
-        lost=None if row["lost"] is None else bool(row["lost"]),
+        lost=_lost(row["lost"]),
         **{n: row[n] for n in ("robot", "step", "trials", "tries", "successes", "deaths")},
     )
 
@@ -350,7 +344,6 @@ def _stored_step(row: sa.RowMapping) -> StoredStep:
         times_used=row["step_times_used_before"],
         times_successful=row["step_times_successful_before"],
     )
-    lost = row["step_lost"]
     return StoredStep(
         survivors=Survivors(*(row[f"step_rows_{name}"] for name in Survivors._fields)),
         row=tried,
@@ -364,7 +357,7 @@ def _stored_step(row: sa.RowMapping) -> StoredStep:
         seen=Movement(row["step_seen_dx"], row["step_seen_dy"], 0.0),
         replicated=bool(row["step_replicated"]),
         died=bool(row["step_died"]),
-        lost=None if lost is None else bool(lost),
+        lost=_lost(row["step_lost"]),
         **{
             name: row[f"step_{name}"]
             for name in (
@@ -373,6 +366,11 @@ def _stored_step(row: sa.RowMapping) -> StoredStep:
             )
         },
     )
+
+
+def _lost(stored: int | None) -> bool | None:
+    """Return whether a row was truly lost; None for a whole tool."""
+    return None if stored is None else bool(stored)
 
 
 def _point(row: sa.RowMapping, name: str) -> Point:

@@ -54,8 +54,7 @@ class Selections(Connected):
         """Return the rows that the filter leaves, oldest first."""
         ids = _rows(wanted).with_only_columns(wide.c.id)
         rows = sa.select(affordance).where(affordance.c.id.in_(ids)).order_by(affordance.c.id)
-        with self.reading() as connection:
-            return tuple(map(stored_row, connection.execute(rows).mappings()))
+        return tuple(map(stored_row, self.mappings(rows)))
 
     def extract(
         self,

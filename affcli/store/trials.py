@@ -115,9 +115,7 @@ class Trials(Connected):
         wanted = sa.select(session).order_by(session.c.id)
         if kind is not None:
             wanted = wanted.where(session.c.kind == kind)
-        with self.reading() as connection:
-            rows = connection.execute(wanted).mappings().all()
-        return tuple(map(_session_info, rows))
+        return tuple(map(_session_info, self.mappings(wanted)))
 
     def finish_session(self, session_id: int, now: str) -> None:
         """Mark a session as done; one that was done before stays as it is."""
