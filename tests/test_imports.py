@@ -54,7 +54,10 @@ def test_help_imports_nothing_heavy() -> None:
         *CAMERA,
         *PICTURES,
     }
-    for args in (("--help",), ("--version",), ("learn", "--help"), ("camera", "view", "--help")):
+    for args in (
+        *(("--help",), ("--version",), ("learn", "--help")),
+        *(("camera", "view", "--help"), ("table", "export", "--help")),
+    ):
         assert not imported_by(*args) & heavy
 
 
