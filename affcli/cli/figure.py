@@ -2,6 +2,7 @@
 
 import typer
 
+from affcli.cli import figure_tested
 from affcli.cli.db import help_without_command
 
 app = typer.Typer(help="Figures for a paper: PNG, SVG or PDF.", rich_markup_mode=None)
@@ -11,3 +12,8 @@ app = typer.Typer(help="Figures for a paper: PNG, SVG or PDF.", rich_markup_mode
 def root(context: typer.Context) -> None:
     """Figures for a paper: PNG, SVG or PDF, by the ending of the file's name."""
     help_without_command(context)
+
+
+app.command("trial")(figure_tested.trial)
+app.command("results")(figure_tested.results)
+app.command("adaptation")(figure_tested.adaptation)

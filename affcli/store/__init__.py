@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from affcli.store.adaptation import StepSums, TrialGroup
     from affcli.store.copying import backup
     from affcli.store.health import Finding, check
     from affcli.store.info import DatabaseInfo, database_info
@@ -49,10 +50,12 @@ __all__ = [
     "SessionKind",
     "State",
     "StepScene",
+    "StepSums",
     "Store",
     "StoredRow",
     "StoredStep",
     "SuccessCount",
+    "TrialGroup",
     "TrialInfo",
     "TrialResult",
     "backup",
@@ -66,6 +69,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "adaptation": ("StepSums", "TrialGroup"),
     "copying": ("backup",),
     "health": ("Finding", "check"),
     "info": ("DatabaseInfo", "database_info"),

@@ -9,7 +9,7 @@ from affcli.store.selection import Selections
 from affcli.store.trials import Trials
 
 
-class Store(LearningRuns, Trials, Records, Results, Scenes, Comparing, Selections):
+class Store(LearningRuns, Trials, Records, Results, Scenes, Comparing, Selections, Adaptation):
     """An open database: learning runs, trials, and results for reports.
 
     Every method is one transaction and returns plain values; no row or connection leaves the store.

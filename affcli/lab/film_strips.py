@@ -1,0 +1,102 @@
+"""A stored trial, gathered for its film strip."""
+
+import math
+from collections.abc import Iterable
+
+from affcli.config import settings_from_json
+from affcli.core.change_detection import MOVEMENT_THRESHOLD
+from affcli.core.task import GOAL_NUMBERS, START_NUMBERS, goal_regions, start_positions
+from affcli.core.tool import TOOL_PARTS, ToolName, paper_tools
+from affcli.core.trial import TrialSpec
+from affcli.errors import DatabaseError, UsageError, one_line
+from affcli.report.film import FilmedStep, FilmedTrial
+from affcli.store import Store, StoredStep, TrialInfo
+
+
+def film_of(store: Store, trial_id: int, wanted: tuple[int, int] | None = None) -> FilmedTrial:
+    """Return a trial with its steps, finished or not.
+
+    Args:
+        store: open.
+        trial_id: which.
+        wanted: the numbers of a first and a last step that it must have; None for any.
+
+    Raises:
+        UsageError: there is no such trial, or no such step in it.
+        DatabaseError: it holds what affcli did not write.
+    """
+    info = store.trial(trial_id)
+    steps = tuple(map(_filmed, store.trial_steps(trial_id)))
+    if wanted is not None:
+        _require_steps(trial_id, wanted, len(steps))
+    settings, spec = settings_from_json(info.settings), info.spec
+    layout, table = settings.workspace.layout, settings.workspace.table
+    _require_known(trial_id, spec, steps)
+    tools = paper_tools(settings.workspace.tools)
+    believed, held = tools[ToolName(spec.tool)], tools[ToolName(spec.shape)]
+    return FilmedTrial(
+        title=_title(info),
+        ending=None if info.outcome is None else info.outcome.value,
+        parts=held.parts,
+        missing=believed.parts_missing_in(held),
+        goal=goal_regions(layout)[spec.goal],
+        wrist=settings.workspace.wrist_start,
+        puck=start_positions(layout)[spec.start],
+        puck_radius=settings.workspace.puck.radius,
+        table=(-table.half_width, table.near, table.half_width, table.far),
+        steps=steps,
+    )
+
+
+def _filmed(step: StoredStep) -> FilmedStep:
+    """Return a step as a panel shows it."""
+    return FilmedStep(
+        number=step.number,
+        behavior=one_line(step.row.exploratory, 40),
+        row=step.affordance_id,
+        wrist_start=step.wrist_start,
+        wrist_end=step.wrist_end,
+        puck_start=step.true_start,
+        puck_end=step.true_end,
+        expected=step.expected,
+        seen=step.seen,
+        moved=step.seen_distance > MOVEMENT_THRESHOLD,
+        replicated=step.replicated,
+        blocked=step.status is None,
+        excluded=step.died,
+        lost=step.lost,
+        successful=step.times_successful_after,
+        used=step.times_used_after,
+    )
+
+
+def _require_steps(trial_id: int, wanted: tuple[int, int], count: int) -> None:
+    """Refuse steps that the trial does not have."""
+    if wanted[1] > count:
+        known = f"it has steps 1 to {count}" if count else "it has none"
+        missing = max(wanted[0], count + 1)
+        raise UsageError(f"no step {missing} in trial {trial_id}; {known}")
+
+
+def _require_known(trial_id: int, spec: TrialSpec, steps: Iterable[FilmedStep]) -> None:
+    """Refuse tools and places that no trial of affcli has."""
+    if not {spec.tool, spec.shape} <= set(TOOL_PARTS):
+        raise DatabaseError(f"trial {trial_id} holds a tool that affcli does not know")
+    if spec.goal not in GOAL_NUMBERS or spec.start not in START_NUMBERS:
+        raise DatabaseError(f"trial {trial_id} holds a goal or start that affcli does not know")
+    numbers: list[float] = []
+    for step in steps:
+        for pair in (step.wrist_start, step.wrist_end, step.puck_start, step.puck_end):
+            numbers += pair
+        numbers += (*step.expected, *step.seen)
+    if not all(math.isfinite(number) for number in numbers):
+        raise DatabaseError(
+            f"trial {trial_id} holds a place that is none; restore a copy of the database"
+        )
+
+
+def _title(info: TrialInfo) -> str:
+    """Return which trial it is."""
+    spec = info.spec
+    tool = spec.tool if spec.tool == spec.shape else f"{spec.tool}, broken: {spec.shape}"
+    return f"Trial {info.id}: {tool}, goal {spec.goal}, start {spec.start}"

@@ -1,0 +1,47 @@
+"""Which session a figure is about."""
+
+from collections.abc import Sequence
+
+from affcli.errors import UsageError, one_line
+from affcli.store import SessionInfo, SessionKind, Store
+
+AGAIN = {
+    "reproduce": "give the same affcli reproduce again: it goes on from there",
+    "break-tool": "run affcli break-tool again",
+    "solve": "run affcli solve again",
+}
+"""What to do about a session that was not finished, by its kind."""
+
+
+def finished_session(
+    store: Store, number: int | None, kinds: Sequence[SessionKind]
+) -> SessionInfo | None:
+    """Return a finished session.
+
+    Args:
+        store: open.
+        number: which; None for the latest finished one.
+        kinds: those that will do.
+
+    Returns:
+        The session; None when none is asked for and none is there.
+
+    Raises:
+        UsageError: there is none of that number, or it is of another kind, or not finished.
+    """
+    sessions = store.sessions()
+    if number is None:
+        finished = [s for s in sessions if s.kind in kinds and s.status == "done"]
+        return max(finished, key=lambda s: (s.finished_at or "", s.id), default=None)
+    found = next((s for s in sessions if s.id == number), None)
+    if found is None:
+        known = f"they are numbered 1 to {sessions[-1].id}" if sessions else "there are none yet"
+        raise UsageError(f"no session {number}; {known}")
+    kind, wanted = one_line(found.kind, 40), " or ".join(kinds)
+    if found.kind not in kinds:
+        others = [str(s.id) for s in sessions if s.kind in kinds and s.status == "done"]
+        there = f"try --session {others[-1]}" if others else f"run affcli {kinds[0]} first"
+        raise UsageError(f"session {number} is of affcli {kind}, not of {wanted}; {there}")
+    if found.status != "done":
+        raise UsageError(f"session {number} is not finished; {AGAIN[found.kind]}")
+    return found

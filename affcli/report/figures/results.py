@@ -1,0 +1,145 @@
+"""Our results with the paper's counts: 20 cells, the total, the broken tool (§7.1, §7.2)."""
+
+from collections import Counter
+from collections.abc import Mapping
+from typing import Any
+
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
+
+from affcli.core.task import GOAL_NUMBERS
+from affcli.report.figures.canvas import INK, PALE, SKY, TWO_COLUMNS, VERMILION, canvas
+from affcli.report.paper import EXTENSION_OF_REACH
+from affcli.report.results import STARTS, Beside, Results
+
+HEIGHT = 2.35
+"""Of the figure (in)."""
+DOT = 0.02
+"""What an interval of one count is made longer by on both sides, or nothing of it would be seen."""
+RAISED = 0.3
+"""How far the paper's mark stands over ours, in rows: most lie at the same count."""
+PAPER: dict[str, Any] = {
+    "marker": "D",
+    "markersize": 4.2,
+    "linestyle": "none",
+    "markeredgecolor": VERMILION,
+}
+
+
+def results_figure(results: Results) -> Figure:
+    """Draw the results: a panel a goal with a row a tool; total and broken tool beside them."""
+    with canvas(TWO_COLUMNS, HEIGHT) as figure:
+        grid = figure.add_gridspec(2, 5, width_ratios=(1, 1, 1, 1, 1.15))
+        tools = list(EXTENSION_OF_REACH)
+        for goal in GOAL_NUMBERS:
+            axes = figure.add_subplot(grid[:, goal - 1])
+            rows = {tool: results.cells[tool, goal] for tool in tools}
+            _draw_rows(axes, rows)
+            axes.set_title(f"goal {goal}")
+            axes.set_xlabel(f"successes of {STARTS}")
+            axes.set_xticks(range(STARTS + 1))
+            axes.set_xlim(-0.35, STARTS + 0.35)
+            if goal != GOAL_NUMBERS[0]:
+                axes.tick_params(labelleft=False)
+        for row, (name, beside) in enumerate(
+            (("all trials", results.total), ("broken tool", results.broken))
+        ):
+            _draw_sum(figure.add_subplot(grid[row, 4]), name, beside)
+        figure.legend(
+            handles=_legend_entries(results), loc="outside lower center", ncols=4, borderpad=0.2
+        )
+        words = f"{results.title}; {results.note}" if results.note else results.title
+        figure.suptitle(words, x=0.006, ha="left", fontsize=7.0, parse_math=False)
+    return figure
+
+
+def _draw_sum(axes: Axes, name: str, beside: Beside | None) -> None:
+    """Draw one row over many trials, or say that they were not all done."""
+    axes.set_title(name)
+    axes.spines["left"].set_visible(False)
+    if beside is None:
+        axes.set_xticks([])
+        axes.set_yticks([])
+        axes.spines["bottom"].set_visible(False)
+        axes.text(0.5, 0.5, "not all done", transform=axes.transAxes, ha="center", va="center")
+        return
+    _draw_rows(axes, {"": beside})
+    axes.set_xlabel(f"successes of {beside.tried}")
+    axes.xaxis.set_major_locator(MaxNLocator(4, integer=True))
+    axes.set_xlim(*_limits(beside))
+
+
+def _draw_rows(axes: Axes, rows: Mapping[str, Beside]) -> None:
+    """Draw a row for each name, the first on top."""
+    axes.set_yticks(range(len(rows)), list(rows))
+    axes.set_ylim(len(rows) - 0.45, -0.65)
+    axes.tick_params(axis="y", length=0.0)
+    axes.grid(axis="x", color=PALE, linewidth=0.5)
+    axes.set_axisbelow(True)
+    for y, beside in enumerate(rows.values()):
+        _draw_ours(axes, y, beside)
+        fill = "white" if beside.outside else VERMILION
+        axes.plot([beside.paper], [y - RAISED], **PAPER, markerfacecolor=fill, zorder=5)
+
+
+def _draw_ours(axes: Axes, y: float, beside: Beside) -> None:
+    """Draw our successes: mean and intervals, or each robot's when they are few."""
+    spread = beside.spread
+    if spread is not None:
+        axes.plot(
+            [spread.low - DOT, spread.high + DOT],
+            [y, y],
+            color=SKY,
+            linewidth=5.0,
+            solid_capstyle="round",
+        )
+        low, high = spread.mean_ci
+        axes.errorbar(
+            spread.mean, y, xerr=[[spread.mean - low], [high - spread.mean]],
+            fmt="o", markersize=2.6, color=INK, capsize=2.0, elinewidth=0.8, zorder=4,
+        )  # fmt: skip
+        return
+    if len(beside.counts) > 1:
+        for count, robots in Counter(beside.counts).items():
+            size = 9.0 * (robots / len(beside.counts)) ** 0.5
+            axes.plot([count], [y], marker="o", markersize=size, color=SKY, zorder=3)
+    if beside.counts:
+        axes.plot([beside.mean], [y], marker="o", markersize=3.2, color=INK, zorder=4)
+        if beside.tried < STARTS:
+            words = f"of {beside.tried}"
+            axes.annotate(words, (beside.mean, y), (4, 0), textcoords="offset points", va="center")
+
+
+def _limits(beside: Beside) -> tuple[float, float]:
+    """Return how far the axis of one row reaches: from below all that is drawn to all solved."""
+    low = min(*beside.counts, beside.paper)
+    room = max(1.0, 0.1 * (beside.tried - low))
+    return low - room, beside.tried + 0.4 * room
+
+
+def _legend_entries(results: Results) -> list[Artist]:
+    """Return a handle for each kind of mark that is drawn."""
+    every = [*results.cells.values(), *(b for b in (results.total, results.broken) if b)]
+    entries: list[Artist] = [
+        Line2D([], [], **PAPER, markerfacecolor=VERMILION, label="the paper"),
+    ]
+    if any(beside.outside for beside in every):
+        label = "the paper, outside the central 95 %"
+        entries.append(Line2D([], [], **PAPER, markerfacecolor="white", label=label))
+    if any(beside.spread for beside in every):
+        dot: dict[str, Any] = {"marker": "o", "color": INK, "linewidth": 0.8}
+        entries += [
+            Line2D([], [], **dot, markersize=2.6, label="mean with its 95 % interval"),
+            Line2D([], [], color=SKY, linewidth=5.0, label="central 95 % of robots"),
+        ]
+        return entries
+    dot = {"marker": "o", "linestyle": "none"}
+    if results.robots > 1:
+        label = "robots (area: how many)"
+        entries.append(Line2D([], [], **dot, markersize=6.0, color=SKY, label=label))
+    label = "mean" if results.robots > 1 else "one robot"
+    entries.append(Line2D([], [], **dot, markersize=3.2, color=INK, label=label))
+    return entries

@@ -1,0 +1,200 @@
+"""A testing trial as a film strip shows it: its steps, and which of them get a panel (§7)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from affcli.core.geometry import Point
+from affcli.core.observation import Movement
+from affcli.core.task import GoalRegion
+from affcli.core.tool import ToolPart
+
+COLUMNS = 4
+"""Panels in a row: narrower ones leave no room for what stands over them."""
+MOST_PANELS = 12
+"""Of a trial of which no steps are named: three rows."""
+MOST_NAMED = 16
+"""Steps that can be asked for at once: they fill a page."""
+
+
+@dataclass(frozen=True, slots=True)
+class FilmedStep:
+    """One step of a trial, as a panel shows it.
+
+    Args:
+        number: 1, 2, 3, ... within the trial.
+        behavior: the exploratory behavior, in words.
+        row: the row tried, by its id in the database.
+        wrist_start, wrist_end: the wrist before and after the exploratory behavior; when the tool
+            could not be lowered, before and after it was carried there (in, table frame).
+        puck_start, puck_end: where the attractor truly was (in, table frame).
+        expected, seen: movement of the attractor that the row predicts, and that was observed.
+        moved: the movement seen is one that the change detection function T detects.
+        replicated: it counts as a success of the row.
+        blocked: the tool could not be lowered.
+        excluded: the step took the row out of further consideration.
+        lost: the broken tool cannot do what the row says; None for a whole tool.
+        successful, used: the row's counters after the step.
+    """
+
+    number: int
+    behavior: str
+    row: int
+    wrist_start: Point
+    wrist_end: Point
+    puck_start: Point
+    puck_end: Point
+    expected: Movement
+    seen: Movement
+    moved: bool
+    replicated: bool
+    blocked: bool
+    excluded: bool
+    lost: bool | None
+    successful: int
+    used: int
+
+
+@dataclass(frozen=True, slots=True)
+class FilmedTrial:
+    """A trial, as a film strip shows it.
+
+    Args:
+        title: which trial, in words.
+        ending: how it ended, in a word or three; None when it has not.
+        parts: of the shape that was held (tool frame).
+        missing: parts that the robot believed to hold as well (tool frame).
+        goal: the goal region.
+        wrist, puck: where they were at the start (in, table frame).
+        puck_radius: in.
+        table: left, bottom, right and top of the table (in, table frame).
+        steps: all there are.
+    """
+
+    title: str
+    ending: str | None
+    parts: tuple[ToolPart, ...]
+    missing: tuple[ToolPart, ...]
+    goal: GoalRegion
+    wrist: Point
+    puck: Point
+    puck_radius: float
+    table: tuple[float, float, float, float]
+    steps: tuple[FilmedStep, ...]
+
+    @property
+    def course(self) -> str:
+        """How it ended and after how many steps, in words."""
+        steps = f"{len(self.steps)} step{'s' if len(self.steps) != 1 else ''}"
+        return f"not ended, {steps} so far" if self.ending is None else f"{self.ending}, {steps}"
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """What of a trial gets a panel.
+
+    Args:
+        start: the table as the trial begins has one.
+        takes: what each further panel shows: one step; or several in a row that did the same in
+            vain, of which it shows the last.
+        left_out: steps among the wanted ones that are in no panel.
+    """
+
+    start: bool
+    takes: tuple[tuple[FilmedStep, ...], ...]
+    left_out: tuple[FilmedStep, ...] = ()
+
+    @property
+    def panels(self) -> int:
+        """How many panels there are."""
+        return len(self.takes) + self.start
+
+    @property
+    def last(self) -> int:
+        """The number of the last step shown; 0 when none is."""
+        return self.takes[-1][-1].number if self.takes else 0
+
+    @property
+    def note(self) -> str:
+        """What was left out, in words; empty if nothing."""
+        if not self.left_out:
+            return ""
+        vain = sum(not step.replicated for step in self.left_out)
+        return (
+            f"left out {steps_named([step.number for step in self.left_out])}"
+            f" ({vain} of {len(self.left_out)} not replicated)"
+        )
+
+
+def shown_of(steps: Sequence[FilmedStep], wanted: tuple[int, int] | None) -> Shown:
+    """Choose what gets a panel.
+
+    Choice: steps that are named have one each. Of a whole trial, steps in a row that tried the same
+    row while the attractor stayed where it was share one; and when that leaves more than
+    `MOST_PANELS`, so many of them are shown, evenly spread, the first and the last among them. The
+    start has a panel where that does not begin another row of panels.
+
+    Args:
+        steps: of the trial, in order.
+        wanted: numbers of the first and last step to show; None for the whole trial.
+    """
+    if wanted is not None:
+        first, last = wanted
+        return Shown(start=False, takes=tuple((s,) for s in steps if first <= s.number <= last))
+    takes = _takes(steps)
+    if len(takes) <= MOST_PANELS:
+        return Shown(start=not takes or len(takes) % COLUMNS != 0, takes=takes)
+    gaps = MOST_PANELS - 1
+    kept = {round(i * (len(takes) - 1) / gaps) for i in range(MOST_PANELS)}
+    return Shown(
+        start=False,
+        takes=tuple(take for i, take in enumerate(takes) if i in kept),
+        left_out=tuple(step for i, take in enumerate(takes) if i not in kept for step in take),
+    )
+
+
+def _takes(steps: Sequence[FilmedStep]) -> tuple[tuple[FilmedStep, ...], ...]:
+    """Return the steps, those together that did the same in vain one after the other."""
+    takes: list[tuple[FilmedStep, ...]] = []
+    for step in steps:
+        before = takes[-1][-1] if takes else None
+        if before is not None and _again(before, step):
+            takes[-1] += (step,)
+        else:
+            takes.append((step,))
+    return tuple(takes)
+
+
+def _again(before: FilmedStep, step: FilmedStep) -> bool:
+    """Tell whether two steps tried the same row and both left the attractor where it was."""
+    still = not (before.moved or step.moved)
+    return still and (before.row, before.blocked) == (step.row, step.blocked)
+
+
+def take_title(take: Sequence[FilmedStep]) -> str:
+    """Return what stands over a panel: ``2-7  slide arm left 2, row 519``."""
+    first, last = take[0], take[-1]
+    numbers = str(last.number) if first is last else f"{first.number}-{last.number}"
+    return f"{numbers}  {last.behavior}, row {last.row}"
+
+
+def take_verdict(take: Sequence[FilmedStep]) -> str:
+    """Return what came of a panel's steps: ``not replicated: 1/2, excluded``."""
+    last = take[-1]
+    came_of_it = "replicated" if last.replicated else "not replicated"
+    if last.blocked:
+        came_of_it = "blocked"
+    times = f" {len(take)} times" if len(take) > 1 else ""
+    ending = ", excluded" if last.excluded else ""
+    return f"{came_of_it}{times}: {last.successful}/{last.used}{ending}"
+
+
+def steps_named(numbers: Sequence[int]) -> str:
+    """Return step numbers in words: ``step 4`` or ``steps 4-7, 9``."""
+    runs: list[list[int]] = []
+    for number in sorted(numbers):
+        if runs and number == runs[-1][-1] + 1:
+            runs[-1].append(number)
+        else:
+            runs.append([number])
+    words = [str(run[0]) if len(run) == 1 else f"{run[0]}-{run[-1]}" for run in runs]
+    return f"step{'s' if len(numbers) != 1 else ''} {', '.join(words)}"
