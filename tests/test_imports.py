@@ -59,6 +59,7 @@ def test_help_imports_nothing_heavy() -> None:
         *(("camera", "view", "--help"), ("table", "export", "--help")),
     ):
         assert not imported_by(*args) & heavy
+    assert not imported_by("figure", "trial", "--help") & {*heavy, "matplotlib"}
 
 
 def test_sql_imports_neither_sqlalchemy_nor_physics(empty: Path) -> None:

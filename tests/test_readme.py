@@ -11,7 +11,7 @@ from tests.cli.program import done, rows
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text()
 QUERIES = re.findall(r"^```sql\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
-GROUPS = {"camera", "db", "table"}
+GROUPS = {"camera", "db", "figure", "table"}
 QUOTED = re.compile(r"`([^`]+)`")
 
 

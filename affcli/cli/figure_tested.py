@@ -54,7 +54,7 @@ def trial(
 
     shown = shown_of(film.steps, wanted)
     save(out, encoded(trial_figure(film, shown), out.suffix))
-    left_out = f", {shown.note}" if shown.note else ""
+    left_out = f"; {shown.note}" if shown.note else ""
     say(f"{film.title}; {film.course}{left_out}: {one_line(out)}")
 
 

@@ -1,9 +1,9 @@
 """A stored trial, gathered for its film strip."""
 
-import math
 from collections.abc import Iterable
 
 from affcli.config import settings_from_json
+from affcli.core.behavior import BehaviorCall
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.task import GOAL_NUMBERS, START_NUMBERS, goal_regions, start_positions
 from affcli.core.tool import TOOL_PARTS, ToolName, paper_tools
@@ -11,6 +11,11 @@ from affcli.core.trial import TrialSpec
 from affcli.errors import DatabaseError, UsageError, one_line
 from affcli.report.film import FilmedStep, FilmedTrial
 from affcli.store import Store, StoredStep, TrialInfo
+
+FARTHEST = 1e4
+"""in; no length of this laboratory lies beyond it."""
+LONGEST_BEHAVIOR = 20
+"""Letters of a behavior's name and distance; those of affcli have 17 at most."""
 
 
 def film_of(store: Store, trial_id: int, wanted: tuple[int, int] | None = None) -> FilmedTrial:
@@ -52,7 +57,7 @@ def _filmed(step: StoredStep) -> FilmedStep:
     """Return a step as a panel shows it."""
     return FilmedStep(
         number=step.number,
-        behavior=one_line(step.row.exploratory, 40),
+        behavior=_plain(step.row.exploratory),
         row=step.affordance_id,
         wrist_start=step.wrist_start,
         wrist_end=step.wrist_end,
@@ -68,6 +73,11 @@ def _filmed(step: StoredStep) -> FilmedStep:
         successful=step.times_successful_after,
         used=step.times_used_after,
     )
+
+
+def _plain(call: BehaviorCall) -> str:
+    """Return a behavior in letters that every font has, short enough for a panel."""
+    return one_line(str(call).encode("ascii", "backslashreplace").decode(), LONGEST_BEHAVIOR)
 
 
 def _require_steps(trial_id: int, wanted: tuple[int, int], count: int) -> None:
@@ -89,9 +99,9 @@ def _require_known(trial_id: int, spec: TrialSpec, steps: Iterable[FilmedStep]) 
         for pair in (step.wrist_start, step.wrist_end, step.puck_start, step.puck_end):
             numbers += pair
         numbers += (*step.expected, *step.seen)
-    if not all(math.isfinite(number) for number in numbers):
+    if not all(abs(number) < FARTHEST for number in numbers):  # nor is what is no number
         raise DatabaseError(
-            f"trial {trial_id} holds a place that is none; restore a copy of the database"
+            f"trial {trial_id} holds a place that is on no table; restore a copy of the database"
         )
 
 

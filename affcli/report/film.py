@@ -120,7 +120,7 @@ class Shown:
             return ""
         vain = sum(not step.replicated for step in self.left_out)
         return (
-            f"left out {steps_named([step.number for step in self.left_out])}"
+            f"left out: {steps_named([step.number for step in self.left_out])}"
             f" ({vain} of {len(self.left_out)} not replicated)"
         )
 

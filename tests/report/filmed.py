@@ -1,0 +1,78 @@
+"""Film strips of trials made by hand."""
+
+from affcli.core.geometry import Point
+from affcli.core.observation import Movement
+from affcli.core.task import GoalRegion
+from affcli.core.tool import ToolName, paper_tools
+from affcli.core.workspace import ToolGeometry
+from affcli.report.film import FilmedStep, FilmedTrial
+from tests.factories import moved_by
+
+TOOLS = paper_tools(ToolGeometry())
+START = Point(9.0, 22.4)
+TWO_LEFT = moved_by(-2.0, 0.0)
+
+
+def filmed_step(
+    number: int = 1,
+    *,
+    row: int = 7,
+    at: Point = START,
+    moved: tuple[float, float] = (-2.0, 0.0),
+    expected: Movement = TWO_LEFT,
+    behavior: str = "slide arm left 2",
+    blocked: bool = False,
+    lost: bool | None = None,
+    excluded: bool = False,
+    used: int = 2,
+    successful: int = 2,
+) -> FilmedStep:
+    """Return a step in which the wrist slid 2 in to the left; it replicated if the puck did too."""
+    wrist = Point(at.x - 2.0, at.y - 10.0)
+    there = Point(at.x + moved[0], at.y + moved[1])
+    still = moved == (0.0, 0.0)
+    return FilmedStep(
+        number=number,
+        behavior=behavior,
+        row=row,
+        wrist_start=wrist,
+        wrist_end=wrist if blocked else Point(wrist.x - 2.0, wrist.y),
+        puck_start=at,
+        puck_end=there,
+        expected=expected,
+        seen=moved_by(0.02, 0.01) if still else moved_by(*moved),
+        moved=not still,
+        replicated=not still,
+        blocked=blocked,
+        excluded=excluded,
+        lost=lost,
+        successful=successful,
+        used=used,
+    )
+
+
+def in_vain(number: int, *, row: int = 7, blocked: bool = False) -> FilmedStep:
+    """Return a step in which the puck stayed where it was."""
+    return filmed_step(number, row=row, moved=(0.0, 0.0), blocked=blocked)
+
+
+def filmed_trial(
+    *steps: FilmedStep,
+    ending: str | None = "solved",
+    tool: str = "t-hook",
+    shape: str | None = None,
+) -> FilmedTrial:
+    """Return a trial of these steps."""
+    believed, held = TOOLS[ToolName(tool)], TOOLS[ToolName(shape or tool)]
+    return FilmedTrial(
+        title=f"Trial 1: {tool}, goal 3, start 4",
+        ending=ending,
+        parts=held.parts,
+        missing=believed.parts_missing_in(held),
+        goal=GoalRegion(3, Point(-12.4, 22.4), 2.25),
+        wrist=Point(0.0, 15.0),
+        puck=START,
+        puck_radius=1.5,
+        table=(-16.0, 11.8, 16.0, 31.6),
+        steps=steps,
+    )

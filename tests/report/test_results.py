@@ -1,0 +1,160 @@
+"""Our results beside the paper's: what the figure is made of, and what stands in it."""
+
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.text import Text
+
+from affcli.report.figures.canvas import INK, SKY, TWO_COLUMNS, VERMILION, encoded
+from affcli.report.figures.results import results_figure
+from affcli.report.paper import BROKEN_TOOL, EXTENSION_OF_REACH, TOTAL
+from affcli.report.reproduction import Reproduction
+from affcli.report.results import SingleRobots, papers_counts, results_of_many, results_of_single
+from affcli.report.statistics import Spread
+from tests.report.hand_made import FOUR_ROBOTS, MANY_ROBOTS
+
+CELLS = [(tool, goal) for tool in EXTENSION_OF_REACH for goal in (1, 2, 3, 4)]
+ALL_SOLVED = SingleRobots(dict.fromkeys(CELLS, (4, 4)), (15, 16), "one robot a tool: run 1")
+
+
+def points(line: Line2D) -> list[tuple[float, float]]:
+    """Return the points of a line."""
+    return [(float(x), float(y)) for x, y in np.column_stack(line.get_data())]
+
+
+def marks(axes: Axes, color: str, marker: str) -> list[tuple[float, float]]:
+    """Return where marks of a colour and form stand."""
+    lines = [line for line in axes.lines if line.get_marker() == marker]
+    return [
+        at for line in lines if to_hex(line.get_markeredgecolor()) == color for at in points(line)
+    ]
+
+
+def bars(axes: Axes) -> dict[float, tuple[float, float]]:
+    """Return the central 95 % of robots that is drawn in each row."""
+    lines = [line for line in axes.lines if line.get_color() == SKY and line.get_marker() == "None"]
+    ends = [points(line) for line in lines]
+    return {y: (low, high) for (low, y), (high, _) in ends}
+
+
+def words_in(figure: Figure) -> set[str]:
+    return {text.get_text() for text in figure.findobj(Text)}
+
+
+def test_each_cell_has_the_paper_s_count_and_every_robot_s() -> None:
+    results = results_of_many(MANY_ROBOTS)
+    assert list(results.cells) == CELLS == list(papers_counts())
+    for (tool, goal), cell in results.cells.items():
+        assert cell.paper == EXTENSION_OF_REACH[tool][goal - 1]
+        assert cell.counts == MANY_ROBOTS.cells[tool, goal]
+        assert cell.spread == Spread.of(cell.counts)
+    assert results.total is not None
+    assert (results.total.paper, results.total.tried) == (TOTAL, 80)
+    assert list(results.total.counts) == MANY_ROBOTS.totals
+    assert results.broken is not None
+    assert (results.broken.paper, results.broken.tried) == (BROKEN_TOOL, 16)
+
+
+def test_the_figure_shows_means_intervals_and_the_paper_s_counts() -> None:
+    results = results_of_many(MANY_ROBOTS)
+    figure = results_figure(results)
+    *goals, total, broken = figure.axes
+    assert figure.get_size_inches()[0] == TWO_COLUMNS
+    assert [axes.get_title() for axes in goals] == ["goal 1", "goal 2", "goal 3", "goal 4"]
+    assert [label.get_text() for label in goals[0].get_yticklabels()] == list(EXTENSION_OF_REACH)
+    for goal, axes in enumerate(goals, 1):
+        rows = [results.cells[tool, goal] for tool in EXTENSION_OF_REACH]
+        assert [x for x, _ in marks(axes, VERMILION, "D")] == [cell.paper for cell in rows]
+        assert marks(axes, INK, "o") == [(cell.mean, y) for y, cell in enumerate(rows)]
+        for y, cell in enumerate(rows):
+            assert cell.spread is not None
+            assert bars(axes)[y] == pytest.approx((cell.spread.low, cell.spread.high), abs=0.03)
+    for axes, counts, paper in ((total, MANY_ROBOTS.totals, 69), (broken, MANY_ROBOTS.broken, 16)):
+        spread = Spread.of(counts)
+        assert marks(axes, INK, "o") == [(spread.mean, 0.0)]
+        assert bars(axes)[0] == pytest.approx((spread.low, spread.high), abs=0.03)
+        assert marks(axes, VERMILION, "D")[0][0] == paper
+
+
+def test_counts_of_the_paper_that_lie_outside_are_hollow() -> None:
+    results = results_of_many(MANY_ROBOTS)
+    figure = results_figure(results)
+    for goal, axes in enumerate(figure.axes[:4], 1):
+        cells = [results.cells[tool, goal] for tool in EXTENSION_OF_REACH]
+        outside = [not Spread.of(cell.counts).holds(cell.paper) for cell in cells]
+        diamonds = [line for line in axes.lines if line.get_marker() == "D"]
+        assert [line.get_markerfacecolor() == "white" for line in diamonds] == outside
+    assert "the paper, outside the central 95 %" in words_in(figure)
+
+
+def test_intervals_are_for_twenty_robots_or_more() -> None:
+    """With fewer every robot is shown, in the size of how many gave the same."""
+    figure = results_figure(results_of_many(FOUR_ROBOTS))
+    words = words_in(figure)
+    assert not {"mean with its 95 % interval", "central 95 % of robots"} & words
+    assert any("too few robots for intervals (20 or more)" in text for text in words)
+    counts = Counter(FOUR_ROBOTS.cells["stick", 1])
+    dots = {
+        x: line.get_markersize()
+        for line in figure.axes[0].lines
+        for x, y in points(line)
+        if line.get_color() == SKY and y == 0
+    }
+    assert set(dots) == set(counts) == {0, 1, 2}
+    assert dots[1] ** 2 / dots[0] ** 2 == pytest.approx(counts[1] / counts[0])
+
+
+def test_one_robot_is_a_dot() -> None:
+    """A reproduction of one robot has no intervals and no sizes."""
+    cells = {cell: counts[:1] for cell, counts in FOUR_ROBOTS.cells.items()}
+    one = replace(FOUR_ROBOTS, robots=1, cells=cells, broken=[14])
+    results = results_of_many(one)
+    assert results.title.startswith("1 robot, ")
+    assert {"the paper", "one robot"} <= words_in(results_figure(results))
+
+
+@pytest.mark.parametrize("robots", [1, 2, 3, 19, 20, 31])
+def test_any_number_of_robots_can_be_drawn(robots: int) -> None:
+    def repeated(counts: list[int]) -> list[int]:
+        return (counts * 8)[:robots]
+
+    cells = {cell: repeated(list(counts)) for cell, counts in FOUR_ROBOTS.cells.items()}
+    many = replace(FOUR_ROBOTS, robots=robots, cells=cells, broken=repeated([14, 15, 15, 16]))
+    results = results_of_many(many)
+    assert (results.cells["stick", 1].spread is None) == (robots < 20)
+    assert len(results_figure(results).axes) == 6
+
+
+def test_single_robots_have_what_they_tried() -> None:
+    figure = results_figure(results_of_single(ALL_SOLVED))
+    *goals, total, broken = figure.axes
+    for axes in goals:
+        assert marks(axes, INK, "o") == [(4.0, y) for y in range(5)]
+        assert not axes.texts
+    assert marks(total, INK, "o") == [(80.0, 0.0)]
+    assert marks(broken, INK, "o") == [(15.0, 0.0)]
+
+
+def test_where_not_all_starts_were_tried_it_says_how_many() -> None:
+    few = SingleRobots({("stick", 2): (1, 3)}, (0, 0), "one robot a tool: run 1")
+    results = results_of_single(few)
+    assert results.total is None
+    assert results.broken is None
+    *goals, total, broken = results_figure(results).axes
+    assert [text.get_text() for text in goals[1].texts] == ["of 3"]
+    assert marks(goals[1], INK, "o") == [(1.0, 0.0)]
+    assert marks(goals[0], INK, "o") == []
+    assert len(marks(goals[0], VERMILION, "D")) == 5
+    for axes in (total, broken):
+        assert [text.get_text() for text in axes.texts] == ["not all done"]
+
+
+def test_dollars_are_letters() -> None:
+    strange: Reproduction = replace(MANY_ROBOTS, settings="$\\frac{1}{ = 0.45")
+    assert encoded(results_figure(results_of_many(strange)), ".svg").startswith(b"<?xml")
