@@ -18,7 +18,7 @@ from affcli.core.observation import Movement
 from affcli.report.figures.canvas import BLUE, INK, ONE_COLUMN, TWO_COLUMNS, VERMILION, encoded
 from affcli.report.figures.trial import trial_figure
 from affcli.report.figures.trial_legend import EXPECTED, SEEN, Arrow
-from affcli.report.figures.trial_sheet import EDGE, boxes_in, free_corner, section_of
+from affcli.report.figures.trial_page import EDGE, boxes_in, free_corner, section_of
 from affcli.report.film import FilmedTrial, shown_of
 from tests.factories import moved_by
 from tests.report.filmed import START, filmed_step, filmed_trial, in_vain

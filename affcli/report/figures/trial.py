@@ -23,7 +23,7 @@ from affcli.report.figures.trial_legend import (
     draw_legend,
     legend_entries,
 )
-from affcli.report.figures.trial_sheet import MARGIN, Box, Sheet, boxes_in, free_corner, sheet_for
+from affcli.report.figures.trial_page import MARGIN, Box, Page, boxes_in, free_corner, page_for
 from affcli.report.film import FilmedStep, FilmedTrial, Shown, take_title, take_verdict
 
 OFF_TABLE = "#f3f3f3"
@@ -32,54 +32,57 @@ OFF_TABLE = "#f3f3f3"
 def trial_figure(trial: FilmedTrial, shown: Shown) -> Figure:
     """Draw a trial as a film strip.
 
+    Things stand where they truly were. Both arrows begin there: what the row expected, and what the
+    robot saw; a movement that the change detection function T does not detect has no arrow.
+
     Args:
         trial: which.
         shown: what of it gets a panel.
     """
     entries = legend_entries(trial, shown)
-    sheet = sheet_for(trial, shown, len(entries))
-    with canvas(sheet.width, sheet.height) as figure:
+    page = page_for(trial, shown, len(entries))
+    with canvas(page.width, page.height) as figure:
         figure.set_layout_engine("none")
-        left = MARGIN / sheet.width
-        _draw_head(figure, sheet, trial)
-        _draw_panels(figure, sheet, trial, shown)
+        left = MARGIN / page.width
+        _draw_head(figure, page, trial)
+        _draw_panels(figure, page, trial, shown)
         if shown.note:
-            under = (MARGIN + sheet.below - 0.05) / sheet.height
+            under = (MARGIN + page.below - 0.05) / page.height
             figure.text(left, under, shown.note, va="top", fontsize=SMALL)
-        if sheet.beside:
-            edge, _, _, top = sheet.place(shown.panels)
+        if page.beside:
+            edge, _, _, top = page.place(shown.panels)
             draw_legend(figure, entries, "upper left", (edge, top))
         else:
-            corner = (left, MARGIN / sheet.height)
-            draw_legend(figure, entries, "lower left", corner, sheet.across)
+            corner = (left, MARGIN / page.height)
+            draw_legend(figure, entries, "lower left", corner, page.across)
     return figure
 
 
-def _draw_panels(figure: Figure, sheet: Sheet, trial: FilmedTrial, shown: Shown) -> None:
-    """Draw the start, the steps, how it ended, and how long 5 in are."""
+def _draw_panels(figure: Figure, page: Page, trial: FilmedTrial, shown: Shown) -> None:
+    """Draw the start, the steps, and how it ended."""
     if shown.start:
-        axes = _panel(figure, sheet, 0, trial)
+        axes = _panel(figure, page, 0, trial)
         draw_silhouette(axes, trial, trial.wrist)
         draw_grasp(axes, trial.wrist)
         draw_puck(axes, trial.puck, trial.puck_radius)
         _over(axes, "start", "")
     for number, take in enumerate(shown.takes, start=int(shown.start)):
-        axes = _panel(figure, sheet, number, trial)
-        _draw_step(axes, trial, take[-1], sheet.point)
+        axes = _panel(figure, page, number, trial)
+        _draw_step(axes, trial, take[-1], page.point)
         _over(axes, take_title(take), take_verdict(take))
         if take[-1].lost:
             _mark_as_lost(axes)
     if trial.ending is not None and shown.last == len(trial.steps):
         last = shown.takes[-1][-1] if shown.takes else None
-        _draw_ending(figure.axes[-1], sheet, trial.ending, boxes_in(trial, last))
+        _draw_ending(figure.axes[-1], page, trial.ending, boxes_in(trial, last))
 
 
-def _panel(figure: Figure, sheet: Sheet, number: int, trial: FilmedTrial) -> Axes:
+def _panel(figure: Figure, page: Page, number: int, trial: FilmedTrial) -> Axes:
     """Add a panel: a map without ticks, with the table and the goal region."""
-    left, bottom, right, top = sheet.place(number)
+    left, bottom, right, top = page.place(number)
     axes = figure.add_axes((left, bottom, right - left, top - bottom))
-    axes.set_xlim(sheet.section.left, sheet.section.right)
-    axes.set_ylim(sheet.section.bottom, sheet.section.top)
+    axes.set_xlim(page.section.left, page.section.right)
+    axes.set_ylim(page.section.bottom, page.section.top)
     axes.set_xticks([])
     axes.set_yticks([])
     axes.set_facecolor(OFF_TABLE)
@@ -140,8 +143,12 @@ def _draw_step(axes: Axes, trial: FilmedTrial, step: FilmedStep, point: float) -
 
 def _over(axes: Axes, first: str, second: str, *, right: str = "") -> None:
     """Write two lines over a panel, and a word at the right of the second."""
-    lines = ((first, 0.0, 12.0, INK, "bold"), (second, 0.0, 3.0, INK, "normal"))
-    for text, x, up, color, weight in (*lines, (right, 1.0, 3.0, VERMILION, "bold")):
+    lines = (
+        (first, 0.0, 12.0, INK, "bold"),
+        (second, 0.0, 3.0, INK, "normal"),
+        (right, 1.0, 3.0, VERMILION, "bold"),
+    )
+    for text, x, up, color, weight in (line for line in lines if line[0]):
         axes.annotate(
             text, (x, 1.0), (0.0, up),
             xycoords="axes fraction", textcoords="offset points",
@@ -157,25 +164,25 @@ def _mark_as_lost(axes: Axes) -> None:
         spine.set(color=VERMILION, linewidth=1.5)
 
 
-def _draw_head(figure: Figure, sheet: Sheet, trial: FilmedTrial) -> None:
+def _draw_head(figure: Figure, page: Page, trial: FilmedTrial) -> None:
     """Write which trial it is and how it ended; draw how long 5 in are at the right."""
-    left, right = MARGIN / sheet.width, 1 - MARGIN / sheet.width
-    top, second = 1 - MARGIN / sheet.height, 1 - (MARGIN + 0.23) / sheet.height
+    left, right = MARGIN / page.width, 1 - MARGIN / page.width
+    top, second = 1 - MARGIN / page.height, 1 - (MARGIN + 0.23) / page.height
     figure.text(
         left, top, trial.title, va="top", fontsize=7.5, fontweight="bold", parse_math=False
     )  # fmt: skip
     figure.text(left, second, trial.course, va="baseline", fontsize=7.0)
-    long = 5.0 / sheet.point / 72.0 / sheet.width
+    long = 5.0 / page.point / 72.0 / page.width
     bar = Line2D([right - long, right], [second, second], color=INK, linewidth=1.2)
     bar.set_solid_capstyle("butt")
     figure.add_artist(bar)
-    figure.text(right - long - 0.04 / sheet.width, second, "5 in", ha="right", fontsize=SMALL)
+    figure.text(right - long - 0.04 / page.width, second, "5 in", ha="right", fontsize=SMALL)
 
 
-def _draw_ending(axes: Axes, sheet: Sheet, ending: str, boxes: Sequence[Box]) -> None:
+def _draw_ending(axes: Axes, page: Page, ending: str, boxes: Sequence[Box]) -> None:
     """Write how the trial ended into its last panel, in a corner where it hides nothing."""
-    width, height = (4.0 * len(ending) + 7.0) * sheet.point, 11.0 * sheet.point
-    x, y = free_corner(sheet.section, boxes, width, height)
+    width, height = (4.0 * len(ending) + 7.0) * page.point, 11.0 * page.point
+    x, y = free_corner(page.section, boxes, width, height)
     axes.add_patch(
         Rectangle((x, y), width, height, facecolor="white", edgecolor=INK, linewidth=0.6, zorder=8)
     )

@@ -45,7 +45,7 @@ class Section:
 
 
 @dataclass(frozen=True, slots=True)
-class Sheet:
+class Page:
     """Where things stand on a figure's page.
 
     Args:
@@ -92,7 +92,7 @@ class Sheet:
         return left / self.width, bottom / self.height, right / self.width, top / self.height
 
 
-def sheet_for(trial: FilmedTrial, shown: Shown, lines: int) -> Sheet:
+def page_for(trial: FilmedTrial, shown: Shown, lines: int) -> Page:
     """Return a page with room for the panels, the notes and the legend.
 
     Args:
@@ -110,7 +110,7 @@ def sheet_for(trial: FilmedTrial, shown: Shown, lines: int) -> Sheet:
     below = LINE * bool(shown.note)
     if not beside:
         below += LINE * math.ceil(lines / across) + UNDER
-    return Sheet(columns, rows, width, tall, below, section, across, beside)
+    return Page(columns, rows, width, tall, below, section, across, beside)
 
 
 def _panel(width: float, columns: int) -> float:
