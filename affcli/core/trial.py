@@ -1,8 +1,8 @@
 """What is recorded of learning and of testing trials."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import StrEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from affcli.core.affordance import Affordance
 from affcli.core.behavior import Execution
@@ -135,14 +135,11 @@ class Outcome(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class StepRecord:
-    """One step of a testing trial: a row was chosen, tried and judged.
+class Attempt:
+    """One use of a row: it was tried and judged.
 
     Args:
-        number: 1, 2, 3, ... within the trial.
-        clock: robot seconds when the step ended.
-        survivors: rows left by each search.
-        row: the affordance chosen, with its counters before the step.
+        row: the affordance tried, with its counters before.
         placing: the position wrist that went before.
         execution: the exploratory behavior; None when lowering the tool was blocked.
         start: observation before the exploratory behavior (before the placing when blocked).
@@ -152,9 +149,6 @@ class StepRecord:
         replicated: whether `seen` counts as a success of the row.
     """
 
-    number: int
-    clock: float
-    survivors: Survivors
     row: Affordance
     placing: Execution
     execution: Execution | None
@@ -164,20 +158,44 @@ class StepRecord:
     seen: Movement
     replicated: bool
 
+    def by_name(self) -> dict[str, Any]:
+        """Return the fields of an attempt by name: what a record of it is made from."""
+        return {field.name: getattr(self, field.name) for field in fields(Attempt)}
+
+    @property
+    def live(self) -> bool:
+        """The row's probability was greater than 1/2 before: a robot with a task would use it."""
+        return 2 * self.row.times_successful > self.row.times_used
+
     @property
     def times_used_after(self) -> int:
-        """The row's counter of uses after this step."""
+        """The row's counter of uses after this one."""
         return self.row.times_used + 1
 
     @property
     def times_successful_after(self) -> int:
-        """The row's counter of successes after this step."""
+        """The row's counter of successes after this use."""
         return self.row.times_successful + int(self.replicated)
 
     @property
     def died(self) -> bool:
-        """This step took the row's probability to 1/2 or below, out of further consideration."""
+        """This use took the row's probability to 1/2 or below, out of further consideration."""
         return 2 * self.times_successful_after <= self.times_used_after
+
+
+@dataclass(frozen=True, slots=True)
+class StepRecord(Attempt):
+    """One step of a testing trial: a row was chosen, tried and judged.
+
+    Args:
+        number: 1, 2, 3, ... within the trial.
+        clock: robot seconds when the step ended.
+        survivors: rows left by each search.
+    """
+
+    number: int
+    clock: float
+    survivors: Survivors
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,15 +3,15 @@
 from collections.abc import Generator
 from dataclasses import dataclass
 
-from affcli.core.affordance import replicates
 from affcli.core.affordance_table import AffordanceTable
-from affcli.core.behavior import POSITION_WRIST, BehaviorCall, Execution, ExecutionStatus
-from affcli.core.observation import Observation, movement
+from affcli.core.behavior import BehaviorCall
+from affcli.core.observation import Observation
 from affcli.core.ports import Experimenter, Robot, Sensor
 from affcli.core.task import GoalRegion
 from affcli.core.trial import Outcome, StepRecord, TrialEnd
 from affcli.errors import SimulationDivergedError
 from affcli.planning.nested_query import Choose, choose_row
+from affcli.procedures.attempt import attempt
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,29 +87,6 @@ def _step(
     choice = choose(table, seen, goal, robot)
     if choice.position is None:
         return TrialEnd(Outcome.NO_ROW, number - 1, robot.clock, choice.survivors)
-    row = table.row(choice.position)
-    offset = row.start.wrist_to_object
-    placing = robot.execute(BehaviorCall.of(POSITION_WRIST, {"x": offset.x, "y": offset.y}), seen)
-    execution: Execution | None = None
-    start = end = seen
-    if placing.status is ExecutionStatus.DONE:
-        start = sensor.observe()
-        execution = robot.execute(row.exploratory, start)
-        end = sensor.observe()
-    expected, observed = row.expected_movement, movement(start, end)
-    # A blocked placing moves nothing, and a movement of zero never replicates.
-    success = replicates(expected, observed)
-    table.count_use(choice.position, success=success)
-    return StepRecord(
-        number=number,
-        clock=robot.clock,
-        survivors=choice.survivors,
-        row=row,
-        placing=placing,
-        execution=execution,
-        start=start,
-        end=end,
-        expected=expected,
-        seen=observed,
-        replicated=success,
-    )
+    use = attempt(robot, sensor, table.row(choice.position), seen)
+    table.count_use(choice.position, success=use.replicated)
+    return StepRecord(**use.by_name(), number=number, clock=robot.clock, survivors=choice.survivors)
