@@ -11,6 +11,7 @@ from itertools import repeat
 import numpy as np
 from numpy.typing import NDArray
 
+from affcli.core.affordance import Affordance
 from affcli.core.behavior import (
     GRASP,
     POSITION_WRIST,
@@ -156,12 +157,14 @@ class FakeExperimenter:
         lost: which places of the attractor are out of the tool's reach.
         places: where the attractor is put back, one after the other.
         put_back: how often it was.
+        put_for: the rows for which it was put somewhere, in order.
     """
 
     table: FakeTable
     lost: Callable[[Point], bool] = nowhere
     places: Iterable[Point] = ()
     put_back: int = 0
+    put_for: list[Affordance] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.places = iter(self.places)
@@ -172,3 +175,7 @@ class FakeExperimenter:
     def put_attractor_back(self) -> None:
         self.table.attractor = next(iter(self.places))
         self.put_back += 1
+
+    def put_attractor_for(self, row: Affordance) -> None:
+        self.table.attractor = next(iter(self.places))
+        self.put_for.append(row)

@@ -5,6 +5,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from affcli.core.affordance import Affordance
 from affcli.core.behavior import BehaviorCall, Execution
 from affcli.core.geometry import Point
 from affcli.core.observation import Observation
@@ -60,3 +61,11 @@ class Experimenter(Protocol):
 
     def put_attractor_back(self) -> None:
         """Put the attractor at a new random position within the tool's reach; takes no time."""
+
+    def put_attractor_for(self, row: Affordance) -> None:
+        """Put the attractor where the start of a row can be set up anew: at a new random place and
+        angle from which the arm can do what it did when the row was made; takes no time.
+
+        Raises:
+            BadInputError: there is no such place.
+        """

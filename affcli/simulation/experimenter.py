@@ -1,18 +1,22 @@
-"""The person of §6: sees the whole table, lays out trials, and puts the attractor back."""
+"""The person of §6: sees the whole table, lays out trials, and puts the attractor where it is
+wanted.
+"""
 
 import math
 
 import numpy as np
 
+from affcli.core.affordance import Affordance
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.geometry import Point, Pose
+from affcli.core.observation import Observation
 from affcli.core.task import GoalRegion
 from affcli.core.tool import Tool
 from affcli.errors import BadInputError
 from affcli.simulation.arm import reach_at
 from affcli.simulation.reach_of_tool import touchable
 from affcli.simulation.world import World
-from affcli.simulation.wrist_motion import on_grid
+from affcli.simulation.wrist_motion import on_grid, stop_at_edge
 
 PLACEMENTS = 10_000
 """Random places tried before the geometry is called impossible."""
@@ -31,6 +35,7 @@ class SimulatedExperimenter:
         self._rng = rng
         arm = world.workspace.arm
         self._reach = reach_at(arm, arm.flange_height)
+        self._lifted = reach_at(arm, arm.flange_height + arm.lift_height)
 
     def lay_out_learning(self, tool: Tool) -> None:
         """Begin a learning run: tool and attractor at random positions, no goal (§6)."""
@@ -48,6 +53,16 @@ class SimulatedExperimenter:
         world.wrist = world.home
         world.attractor = Pose(start.x, start.y)
 
+    def lay_out_verification(self, tool: Tool) -> None:
+        """Begin a verification: tool at the table's centre, no goal (§8).
+
+        The attractor comes with the first `put_attractor_for`.
+        """
+        world = self._world
+        world.tool = tool
+        world.goal = None
+        world.wrist = world.home
+
     def attractor_out_of_reach(self) -> bool:
         """Tell whether no behavior from any wrist position can touch the attractor.
 
@@ -55,10 +70,9 @@ class SimulatedExperimenter:
         graze it shows the robot nothing. Nothing reaches an attractor pushed over the table's edge.
         """
         world = self._world
-        point, table = world.attractor.point, world.workspace.table
-        on_table = abs(point.x) <= table.half_width and table.near <= point.y <= table.far
-        depth = world.workspace.puck.radius - MOVEMENT_THRESHOLD
-        return not (on_table and touchable(world.tool.outlines, self._reach, point, depth))
+        point, depth = world.attractor.point, world.workspace.puck.radius - MOVEMENT_THRESHOLD
+        within = touchable(world.tool.outlines, self._reach, point, depth)
+        return not (self._on_table(point) and within)
 
     def put_attractor_back(self) -> None:
         """Put the attractor at a random place of the table within the tool's reach and off it.
@@ -66,18 +80,93 @@ class SimulatedExperimenter:
         Raises:
             BadInputError: no such place was found; the geometry leaves no room.
         """
-        table, world = self._world.workspace.table, self._world
+        world = self._world
         for _ in range(PLACEMENTS):
-            u, v = self._rng.random(2).tolist()
-            x = (2.0 * u - 1.0) * table.half_width
-            y = table.near + v * (table.far - table.near)
-            world.attractor = Pose(x, y)
+            world.attractor = Pose(*self._random_place())
             if world.clear_of_attractor(world.wrist) and not self.attractor_out_of_reach():
                 return
         raise BadInputError(
             f"table: no place within reach of the {world.tool.name} in {PLACEMENTS} tries; bring "
             "table.near, table.far and table.half_width closer to the arm"
         )
+
+    def put_attractor_for(self, row: Affordance) -> None:
+        """Put the attractor where the start of `row` can be set up anew; the tool makes way.
+
+        At a random place of the table and a random angle, such that the arm reaches the wrist
+        position that the row's O^s asks for and can go as far from there as it went when the row
+        was made. A row that met the edge of the reach is given a place that lies as far before the
+        edge, elsewhere along it. Where chance finds no such place it is the row's own.
+
+        Whether the tool can be lowered there is up to the tool: how the attractor lay to it was
+        clear when the row was made, anywhere on the table.
+
+        Raises:
+            BadInputError: the arm cannot even do it where it was done.
+        """
+        world, offset = self._world, row.start.wrist_to_object
+        wrist = self._wrist_for(row)
+        place = Point(wrist.x + offset.x, wrist.y + offset.y)
+        world.attractor = Pose(place.x, place.y, float(self._rng.uniform(-math.pi, math.pi)))
+        for _ in range(PLACEMENTS):
+            if world.clear_of_attractor(world.wrist):
+                return
+            world.wrist = self._random_wrist()
+        raise BadInputError(
+            f"tools: the {world.tool.name} has no place beside the attractor in {PLACEMENTS} "
+            "tries; make it smaller"
+        )
+
+    def _wrist_for(self, row: Affordance) -> Point:
+        """Return a random wrist position from which `row` can be done again, its own at worst."""
+        offset, travel, own = row.start.wrist_to_object, _travel(row), _wrist(row.start)
+        for _ in range(PLACEMENTS):
+            place = self._random_place()
+            anywhere = Point(place.x - offset.x, place.y - offset.y)
+            wrist = self._before_edge(anywhere, travel) if row.truncated else anywhere
+            if wrist is None or not self._can_go(wrist, travel):
+                continue
+            if self._on_table(Point(wrist.x + offset.x, wrist.y + offset.y)):
+                return wrist
+        if not (self._reach.holds(own) and self._lifted.holds(own)):
+            raise BadInputError(
+                f"arm: row {row.step} ({row.exploratory}) cannot be done again from where it was "
+                "done, by what was seen then; lower sensor.position_noise and learn again"
+            )
+        return own
+
+    def _can_go(self, wrist: Point, travel: Point) -> bool:
+        """Tell whether the tool can be set down at `wrist` and slid by `travel` from there."""
+        if not (self._reach.holds(wrist) and self._lifted.holds(wrist)):
+            return False
+        end = Point(wrist.x + travel.x, wrist.y + travel.y)
+        return stop_at_edge(self._reach, wrist, end) == end
+
+    def _before_edge(self, wrist: Point, travel: Point) -> Point | None:
+        """Return a wrist from which `travel` ends at the edge of the reach, on the line of `wrist`.
+
+        None when the line does not begin within the reach, or the behavior took the wrist nowhere.
+        """
+        distance = math.hypot(*travel)
+        if distance == 0.0 or not self._reach.holds(wrist):
+            return None
+        # Far enough to meet the edge wherever the line begins.
+        far = 2.0 * self._reach.outer / distance
+        away = Point(wrist.x + far * travel.x, wrist.y + far * travel.y)
+        edge = stop_at_edge(self._reach, wrist, away)
+        return Point(edge.x - travel.x, edge.y - travel.y)
+
+    def _random_place(self) -> Point:
+        """Return a random place on the table, uniform."""
+        table = self._world.workspace.table
+        u, v = self._rng.random(2).tolist()
+        x = (2.0 * u - 1.0) * table.half_width
+        return Point(x, table.near + v * (table.far - table.near))
+
+    def _on_table(self, place: Point) -> bool:
+        """Tell whether a place lies on the table."""
+        table = self._world.workspace.table
+        return abs(place.x) <= table.half_width and table.near <= place.y <= table.far
 
     def _random_wrist(self) -> Point:
         """Return a random position of the tool's grasp point, uniform over the reach."""
@@ -86,3 +175,14 @@ class SimulatedExperimenter:
         radius = (inner**2 + u * (outer**2 - inner**2)) ** 0.5
         bearing = (2.0 * v - 1.0) * self._reach.waist_max
         return Point(on_grid(-radius * math.sin(bearing)), on_grid(radius * math.cos(bearing)))
+
+
+def _wrist(seen: Observation) -> Point:
+    """Return where the wrist was seen (in, table frame)."""
+    return Point(seen.object_x - seen.wrist_to_object_x, seen.object_y - seen.wrist_to_object_y)
+
+
+def _travel(row: Affordance) -> Point:
+    """Return how far the wrist went when `row` was made, as it was seen (in, table frame)."""
+    start, end = _wrist(row.start), _wrist(row.end)
+    return Point(end.x - start.x, end.y - start.y)
