@@ -40,11 +40,19 @@ CHECKS = {
         <> (SELECT count(*) FROM step WHERE trial_id = t.id)""",
     "the steps of a trial are numbered without a gap": """
         SELECT 'trial ' || trial_id FROM step GROUP BY trial_id HAVING max(number) <> count(*)""",
-    # §3.2: both counters are 1 when a row is made, and trials update them.
-    "the counters of a row are those of its steps": """
+    "a verification has as many tries as it says": """
+        SELECT 'verification ' || id FROM verification v WHERE tries IS NOT NULL AND tries
+        <> (SELECT count(*) FROM replication WHERE verification_id = v.id)""",
+    "the tries of a verification are numbered without a gap": """
+        SELECT 'verification ' || verification_id FROM replication
+        GROUP BY verification_id HAVING max(number) <> count(*)""",
+    # §3.2: both counters are 1 when a row is made; trials and verifications update them.
+    "the counters of a row are those of its steps and tries": """
         SELECT 'affordance ' || a.id FROM affordance a LEFT JOIN
-        (SELECT affordance_id, count(*) AS used, sum(replicated) AS successful FROM step
-        JOIN trial t ON t.id = trial_id WHERE t.counters = 'stored' GROUP BY affordance_id) s
+        (SELECT affordance_id, count(*) AS used, sum(replicated) AS successful FROM
+        (SELECT affordance_id, replicated FROM step JOIN trial t ON t.id = trial_id
+        WHERE t.counters = 'stored' UNION ALL SELECT affordance_id, replicated FROM replication)
+        GROUP BY affordance_id) s
         ON s.affordance_id = a.id WHERE a.times_used <> 1 + coalesce(s.used, 0)
         OR a.times_successful <> 1 + coalesce(s.successful, 0)""",
     "a finished run needs nothing to go on": """

@@ -8,12 +8,12 @@ from affcli.errors import DatabaseError, one_line
 APPLICATION_ID = int.from_bytes(b"affc", "big")
 """``PRAGMA application_id`` of affcli's databases."""
 
-REVISION = "0002"
+REVISION = "0003"
 """The revision of ``migrations/`` that this code reads and writes."""
 
 RELATIONS = frozenset(
     {"session", "learning_run", "behavior", "affordance", "trial", "step"}
-    | {"affordance_table", "affordance_wide"}
+    | {"verification", "replication", "affordance_table", "affordance_wide"}
 )
 """The tables and views of that revision."""
 

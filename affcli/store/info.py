@@ -22,7 +22,7 @@ class DatabaseInfo:
         journal_mode: ``delete`` or ``wal``.
         sqlite_version: of the linked library.
         counts: records by what they are, empty when the schema is another: sessions, learning
-            runs, behaviors, affordances, trials, steps.
+            runs, behaviors, affordances, trials, steps, verifications, tries of these.
     """
 
     path: Path
@@ -41,6 +41,8 @@ COUNTS = {
     "affordances": "SELECT coalesce(sum(rows), 0) FROM learning_run",
     "trials": "SELECT count(*) FROM trial",
     "steps": "SELECT coalesce(sum(steps), 0) FROM trial",
+    "verifications": "SELECT count(*) FROM verification",
+    "replications": "SELECT coalesce(sum(tries), 0) FROM verification",
 }
 """Sums of what runs and trials say: counting millions of behaviors would read the whole file."""
 

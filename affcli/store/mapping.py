@@ -12,6 +12,7 @@ from affcli.core.behavior import BehaviorCall, BehaviorName
 from affcli.core.geometry import direction_degrees
 from affcli.core.observation import Observation
 from affcli.core.trial import (
+    Attempt,
     BabblingRecord,
     LearningSpec,
     StepRecord,
@@ -19,8 +20,16 @@ from affcli.core.trial import (
     TrialSpec,
     Truth,
 )
+from affcli.core.verification import ReplicationRecord
 from affcli.errors import DatabaseError
-from affcli.store.rows import END_OBSERVATION, START_OBSERVATION, BehaviorRow, StepRow, TrialRow
+from affcli.store.rows import (
+    END_OBSERVATION,
+    START_OBSERVATION,
+    BehaviorRow,
+    ReplicationRow,
+    StepRow,
+    TrialRow,
+)
 
 if TYPE_CHECKING:  # a worker that packs a robot's life needs no SQLAlchemy
     from sqlalchemy import RowMapping
@@ -184,8 +193,6 @@ def step_row(
     trial: int, affordance_id: int, record: StepRecord, truth: Truth, lost: bool | None
 ) -> StepRow:
     """Return the row of one step of trial `trial`, which tried affordance `affordance_id`."""
-    # When the tool could not be lowered nothing was executed: the placing tells of the wrist.
-    moved = record.execution or record.placing
     return StepRow(
         trial_id=trial,
         affordance_id=affordance_id,
@@ -195,30 +202,60 @@ def step_row(
         rows_probable=record.survivors.probable,
         rows_reachable=record.survivors.reachable,
         rows_nearest=record.survivors.nearest,
-        placing_status=record.placing.status,
-        status=None if record.execution is None else record.execution.status,
-        wrist_start_x=moved.wrist_start.x,
-        wrist_start_y=moved.wrist_start.y,
-        wrist_end_x=moved.wrist_end.x,
-        wrist_end_y=moved.wrist_end.y,
-        start_object_x=record.start.object_x,
-        start_object_y=record.start.object_y,
-        end_object_x=record.end.object_x,
-        end_object_y=record.end.object_y,
         true_start_x=truth.start.x,
         true_start_y=truth.start.y,
         true_end_x=truth.end.x,
         true_end_y=truth.end.y,
-        expected_dx=record.expected.dx,
-        expected_dy=record.expected.dy,
-        seen_dx=record.seen.dx,
-        seen_dy=record.seen.dy,
-        seen_distance=record.seen.distance,
-        replicated=record.replicated,
-        times_used_before=record.row.times_used,
-        times_used_after=record.times_used_after,
-        times_successful_before=record.row.times_successful,
-        times_successful_after=record.times_successful_after,
         died=record.died,
         lost=lost,
+        **_attempt_columns(record),
     )
+
+
+def replication_row(
+    verification: int, affordance_id: int, record: ReplicationRecord, truth: Truth
+) -> ReplicationRow:
+    """Return the row of one try of a verification, which tried affordance `affordance_id`."""
+    return ReplicationRow(
+        verification_id=verification,
+        affordance_id=affordance_id,
+        number=record.number,
+        clock=record.clock,
+        true_start_x=truth.start.x,
+        true_start_y=truth.start.y,
+        true_start_angle=truth.start.angle,
+        true_end_x=truth.end.x,
+        true_end_y=truth.end.y,
+        true_end_angle=truth.end.angle,
+        live=record.live,
+        died=record.live and record.died,
+        **_attempt_columns(record),
+    )
+
+
+def _attempt_columns(record: Attempt) -> dict[str, Any]:
+    """Return the columns that say what was done with a row, seen, and counted."""
+    # When the tool could not be lowered nothing was executed: the placing tells of the wrist.
+    moved = record.execution or record.placing
+    return {
+        "placing_status": record.placing.status,
+        "status": None if record.execution is None else record.execution.status,
+        "wrist_start_x": moved.wrist_start.x,
+        "wrist_start_y": moved.wrist_start.y,
+        "wrist_end_x": moved.wrist_end.x,
+        "wrist_end_y": moved.wrist_end.y,
+        "start_object_x": record.start.object_x,
+        "start_object_y": record.start.object_y,
+        "end_object_x": record.end.object_x,
+        "end_object_y": record.end.object_y,
+        "expected_dx": record.expected.dx,
+        "expected_dy": record.expected.dy,
+        "seen_dx": record.seen.dx,
+        "seen_dy": record.seen.dy,
+        "seen_distance": record.seen.distance,
+        "replicated": record.replicated,
+        "times_used_before": record.row.times_used,
+        "times_used_after": record.times_used_after,
+        "times_successful_before": record.row.times_successful,
+        "times_successful_after": record.times_successful_after,
+    }

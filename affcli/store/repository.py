@@ -7,10 +7,21 @@ from affcli.store.results import Results
 from affcli.store.scenes import Scenes
 from affcli.store.selection import Selections
 from affcli.store.trials import Trials
+from affcli.store.verifications import Verifications
 
 
-class Store(LearningRuns, Trials, Records, Results, Scenes, Comparing, Selections, Adaptation):
-    """An open database: learning runs, trials, and results for reports.
+class Store(
+    LearningRuns,
+    Trials,
+    Verifications,
+    Records,
+    Results,
+    Scenes,
+    Comparing,
+    Selections,
+    Adaptation,
+):
+    """An open database: learning runs, trials, verifications, and results for reports.
 
     Every method is one transaction and returns plain values; no row or connection leaves the store.
     A method that cannot read or write raises DatabaseError, and what was saved before is kept.

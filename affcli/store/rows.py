@@ -144,6 +144,64 @@ class StepRow(NamedTuple):
     lost: bool | None
 
 
+class VerificationRow(NamedTuple):
+    """One verification of a table that updated its counters."""
+
+    learning_run_id: int
+    shape: str
+    seed: int
+    sensor: str
+    calibration: str | None
+    tries_wanted: int
+    until_verdict: bool
+    uses_before: int
+    after_trial: int
+    versions: str
+    started_at: str
+    verdict: str | None = None
+    tries: int | None = None
+    decided_after: int | None = None
+    robot_seconds: float | None = None
+    finished_at: str | None = None
+
+
+class ReplicationRow(NamedTuple):
+    """One try of a verification."""
+
+    verification_id: int
+    number: int
+    clock: float
+    affordance_id: int
+    placing_status: str
+    status: str | None
+    wrist_start_x: float
+    wrist_start_y: float
+    wrist_end_x: float
+    wrist_end_y: float
+    start_object_x: float
+    start_object_y: float
+    end_object_x: float
+    end_object_y: float
+    true_start_x: float
+    true_start_y: float
+    true_start_angle: float
+    true_end_x: float
+    true_end_y: float
+    true_end_angle: float
+    expected_dx: float
+    expected_dy: float
+    seen_dx: float
+    seen_dy: float
+    seen_distance: float
+    replicated: bool
+    times_used_before: int
+    times_used_after: int
+    times_successful_before: int
+    times_successful_after: int
+    live: bool
+    died: bool
+
+
 START_OBSERVATION = tuple(f"start_{name}" for name in Observation._fields)
 END_OBSERVATION = tuple(f"end_{name}" for name in Observation._fields)
 

@@ -6,9 +6,11 @@ from affcli.store.rows import (
     AFFORDANCE_COLUMNS,
     BehaviorRow,
     LearningRunRow,
+    ReplicationRow,
     SessionRow,
     StepRow,
     TrialRow,
+    VerificationRow,
 )
 
 
@@ -23,6 +25,8 @@ behavior = _table("behavior", *BehaviorRow._fields)
 affordance = _table("affordance", "id", *AFFORDANCE_COLUMNS)
 trial = _table("trial", "id", *TrialRow._fields)
 step = _table("step", *StepRow._fields)
+verification = _table("verification", "id", *VerificationRow._fields)
+replication = _table("replication", *ReplicationRow._fields)
 
 # Of the view those columns that rows are chosen by.
 wide = _table(
@@ -30,4 +34,4 @@ wide = _table(
     *("id", "run", "exploratory_behavior", "exploratory_params", "replication_probability"),
 )
 
-TABLES = (session, learning_run, behavior, affordance, trial, step)
+TABLES = (session, learning_run, behavior, affordance, trial, step, verification, replication)

@@ -16,8 +16,8 @@ from affcli.core.trial import (
     TrialSpec,
     Truth,
 )
-from affcli.errors import DatabaseError, one_line
 from affcli.store.connection import Connected, insert_many, insert_one
+from affcli.store.counting import count_use
 from affcli.store.learning import new_learning_run
 from affcli.store.mapping import (
     reading_what_was_written,
@@ -160,7 +160,7 @@ class Trials(Connected):
         """
         with self.writing() as connection:
             if spec.counters is Counters.STORED:
-                self._count_use(connection, record, affordance_id)
+                count_use(connection, self.path, record, affordance_id, "steps")
             insert_one(connection, step, step_row(trial_id, affordance_id, record, truth, None))
 
     def end_trial(self, trial_id: int, end: TrialEnd) -> None:
@@ -239,26 +239,6 @@ class Trials(Connected):
                 ids = _affordance_ids(connection, run_id)
                 _insert_trials(connection, session_id, run_id, run.trials, ids)
             return True
-
-    def _count_use(self, connection: sa.Connection, record: StepRecord, row_id: int) -> None:
-        """Move the stored counters of a row from before to after a step."""
-        changed = connection.execute(
-            sa.update(affordance)
-            .filter_by(
-                id=row_id,
-                times_used=record.row.times_used,
-                times_successful=record.row.times_successful,
-            )
-            .values(
-                times_used=record.times_used_after,
-                times_successful=record.times_successful_after,
-            )
-        )
-        if changed.rowcount != 1:
-            raise DatabaseError(
-                f"{one_line(self.path)}: another process changed the counters of affordance "
-                f"{row_id} meanwhile; the steps before are saved; run the command again"
-            )
 
 
 def _insert_trials(

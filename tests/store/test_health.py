@@ -24,7 +24,7 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_all_is_well_in_a_database_that_was_used(sound: Path) -> None:
     findings = check(sound)
-    assert len(findings) == 9
+    assert len(findings) == 11
     assert [f for f in findings if f.wrong] == []
 
 

@@ -173,6 +173,8 @@ def test_info_looks_at_any_revision(database: Path) -> None:
         "affordances": 3,
         "trials": 0,
         "steps": 0,
+        "verifications": 0,
+        "replications": 0,
     }
     stand_at(database, "0099")
     assert database_info(database).revision == "0099"
