@@ -15,8 +15,8 @@ from affcli.simulation.experimenter import SimulatedExperimenter
 from affcli.simulation.robot import SimulatedRobot
 from affcli.simulation.world import World
 
-LEARNING, TRIAL = 0, 1
-"""First word of a random stream's key: what it is for."""
+LEARNING, TRIAL, VERIFICATION, PREDICTION = 0, 1, 3, 4
+"""First word of a random stream's key: what it is for. 2 is a camera's power-up (`lab.sensing`)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ class Bench:
         Args:
             settings: of everything.
             world: the true state.
-            purpose: `LEARNING` or `TRIAL`.
+            purpose: `LEARNING`, `TRIAL`, `VERIFICATION` or `PREDICTION`.
             seed, robot: whose bench it is.
             words: what else tells its streams from others'.
         """

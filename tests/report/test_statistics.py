@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from affcli.report.statistics import HIGH, LOW, Spread, quantile
+from affcli.report.statistics import HIGH, LOW, Spread, quantile, wilson
 
 successes = st.lists(st.integers(0, 80), min_size=1, max_size=250)
 
@@ -66,3 +66,15 @@ def test_one_robot_has_no_spread() -> None:
 def test_no_robots_are_an_error() -> None:
     with pytest.raises(ValueError, match="mean requires at least one data point"):
         Spread.of([])
+
+
+@given(st.integers(1, 5000).flatmap(lambda n: st.tuples(st.integers(0, n), st.just(n))))
+def test_the_interval_of_a_share_is_scipys(share: tuple[int, int]) -> None:
+    theirs = stats.binomtest(*share).proportion_ci(0.95, method="wilson")
+    assert wilson(*share) == pytest.approx((theirs.low, theirs.high), abs=1e-12)
+
+
+def test_all_or_none_end_the_interval_and_nothing_leaves_it_open() -> None:
+    assert wilson(0, 7)[0] == 0.0
+    assert wilson(7, 7)[1] == 1.0
+    assert wilson(0, 0) == (0.0, 1.0)

@@ -8,17 +8,20 @@ import pytest
 from affcli.errors import DatabaseError
 from affcli.lab.learning import learn
 from affcli.lab.solving import solve
+from affcli.lab.verifying import verification_spec, verify
 from affcli.store import Store, check, open_store
 from tests.lab.quick import now, spec_of
 
 
 @pytest.fixture(scope="module")
 def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A database with a learned tool, whose counters trials have changed."""
+    """A database with a learned tool, whose counters trials and a verification have changed."""
     path = tmp_path_factory.mktemp("health") / "sound.db"
     with open_store(path, create=True, write=True) as store:
         run = learn(store, spec_of(behaviors=300), now).info
         list(solve(store, [run], 2, [1, 2], 0, now))
+        spec = verification_spec(run, "l-hook", 0, None, 20, until_verdict=False)
+        list(verify(store, run, spec, now, update=True))
     return path
 
 
@@ -41,6 +44,10 @@ def test_all_is_well_in_an_empty_one(store: Store) -> None:
         ("delete from step where trial_id = 1 and number = 1", "numbered without a gap"),
         ("update trial set steps = steps + 1 where id = 2", "as many steps as it says"),
         ("update affordance set times_used = times_used + 1", "counters of a row"),
+        ("delete from replication where number = 3", "tries of a verification are numbered"),
+        ("update verification set tries = 99", "as many tries as it says"),
+        ("update replication set replicated = 1 - replicated", "counters of a row"),
+        ("update replication set affordance_id = 9999", "every reference leads somewhere"),
         ("update learning_run set checkpoint = '{}'", "needs nothing to go on"),
         ("update trial set session_id = 99", "every reference leads somewhere"),
     ],

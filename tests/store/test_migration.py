@@ -13,7 +13,8 @@ import affcli
 from affcli.errors import DatabaseError
 from affcli.lab.learning import learn
 from affcli.lab.solving import SolvedTrial, solve
-from affcli.store import database_info, open_store, run_sql, upgrade
+from affcli.lab.verifying import verification_spec, verify
+from affcli.store import check, database_info, open_store, run_sql, upgrade
 from affcli.store.identity import REVISION
 from affcli.store.migrate import migrations_folder
 from affcli.store.rows import TrialRow
@@ -176,6 +177,24 @@ def test_an_upgraded_database_solves_and_learns(tmp_path: Path) -> None:
         ]
         assert len(ended) == 1
         assert not learn(store, run.spec, lambda: "now").new
+
+
+@pytest.mark.parametrize("revision", ["0001", "0002"])
+def test_the_table_of_an_upgraded_database_can_be_verified(revision: str, tmp_path: Path) -> None:
+    """What changed its counters before is still accounted for."""
+    old = Path(shutil.copy(DATABASES / f"{revision}.db", tmp_path / "old.db"))
+    old.chmod(0o644)
+    upgrade(old)
+    with open_store(old, create=False, write=True) as store:
+        run = store.latest_run("t-hook")
+        assert run is not None
+        spec = verification_spec(run, "l-hook", 0, None, 12, until_verdict=False)
+        tried = list(verify(store, run, spec, lambda: "now", update=True))
+    assert run_sql_raw(old, "SELECT count(*) FROM replication") == [(12,)]
+    ((last,),) = run_sql_raw(old, "SELECT max(id) FROM trial")
+    assert run_sql_raw(old, "SELECT tries, after_trial FROM verification") == [(12, last)]
+    assert max(one.record.times_used_after for one in tried) > 2
+    assert [finding for finding in check(old) if finding.wrong] == []
 
 
 LOADED = """

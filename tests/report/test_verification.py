@@ -1,0 +1,137 @@
+"""What is said of a verification, made by hand."""
+
+from dataclasses import replace
+
+import pytest
+from syrupy.assertion import SnapshotAssertion
+
+from affcli.core.behavior import CONTRACT_ARM, SLIDE_ARM_LEFT, Execution, ExecutionStatus
+from affcli.core.geometry import Point
+from affcli.core.observation import movement
+from affcli.core.verification import ReplicationRecord, VerificationSpec
+from affcli.report.statistics import wilson
+from affcli.report.verification import (
+    MOST_ROWS,
+    Checked,
+    Verification,
+    verification_json,
+    verification_tables,
+)
+from tests.factories import affordance, observation
+from tests.report.drawn import drawn
+from tests.report.hand_made import call
+
+SPEC = VerificationSpec("t-hook", "t-hook", 0, 0, "noisy", 200, until_verdict=False)
+
+
+def checked(
+    number: int,
+    *,
+    replicated: bool = True,
+    used: int = 1,
+    successful: int = 1,
+    region: str = "left hook",
+    row: int | None = None,
+    blocked: bool = False,
+) -> Checked:
+    """Return a try of a row that slides the attractor, or pulls it if near the right hook."""
+    right = region == "right hook"
+    behavior = call(CONTRACT_ARM, 5) if right else call(SLIDE_ARM_LEFT, 2)
+    moved = (0.2, -4.0) if right else (-1.8, 0.0)
+    tried = affordance(10 + number, moved=moved, call=behavior, used=used, successful=successful)
+    at = tried.start.object_position
+    seen = moved if replicated else (0.1, 0.2)
+    end = tried.start if blocked else observation(Point(at.x + seen[0], at.y + seen[1]))
+    status = ExecutionStatus.BLOCKED if blocked else ExecutionStatus.DONE
+    placing = Execution(behavior, status, Point(0.0, 17.0), Point(0.0, 16.0), 2.0)
+    record = ReplicationRecord(
+        row=tried,
+        placing=placing,
+        execution=None if blocked else placing,
+        start=tried.start,
+        end=end,
+        expected=tried.expected_movement,
+        seen=movement(tried.start, end),
+        replicated=replicated and not blocked,
+        number=number,
+        clock=4.0 * number,
+    )
+    return Checked(record, row or number, region)
+
+
+def of(tries: list[Checked], *, updated: bool = False) -> Verification:
+    return Verification(3, replace(SPEC, tries=len(tries)), 150, updated, tuple(tries))
+
+
+INTACT = of([checked(n, region="right hook" if n % 3 else "left hook") for n in range(1, 61)])
+BROKEN = of(
+    [
+        *(checked(n, replicated=bool(n % 2), region="right hook") for n in range(1, 7)),
+        *(checked(n) for n in range(7, 10)),
+        checked(10, blocked=True, used=5, successful=5),
+        checked(11, used=2, successful=1),
+        checked(12, used=3, successful=1, replicated=False),
+    ],
+    updated=True,
+)
+FEW = of([checked(1), checked(2, replicated=False)])
+MANY = of([checked(n, replicated=False) for n in range(1, 31)])
+EXCLUDED = of([checked(1, used=4, successful=2), checked(2, used=3, successful=1)])
+ALL = {"intact": INTACT, "broken": BROKEN, "few": FEW, "many": MANY, "excluded": EXCLUDED}
+
+
+@pytest.mark.parametrize("columns", [80, 40])
+@pytest.mark.parametrize("name", ALL)
+def test_tables(name: str, columns: int, snapshot: SnapshotAssertion) -> None:
+    assert drawn(verification_tables(ALL[name]), columns) == snapshot
+
+
+def test_the_verdict_and_its_numbers_are_in_the_json() -> None:
+    value = verification_json(INTACT)
+    assert (value["verdict"], value["decided_after"], value["tries"]) == ("table holds", 54, 60)
+    assert value["of_live_rows"] == {"tries": 60, "failed": 0}
+    assert verification_json(FEW)["verdict"] == "undecided"
+    assert verification_json(FEW)["decided_after"] is None
+    assert verification_json(MANY)["decided_after"] == 3
+
+
+def test_groups_are_of_live_rows_with_their_intervals() -> None:
+    value = verification_json(BROKEN)
+    low, high = wilson(3, 6)
+    assert value["by_region"] == [
+        {"what": "left hook", "tries": 4, "replicated": 3, "low": wilson(3, 4)[0]}
+        | {"high": wilson(3, 4)[1]},
+        {"what": "right hook", "tries": 6, "replicated": 3, "low": low, "high": high},
+    ]
+    assert [group["what"] for group in value["by_behavior"]] == [
+        "contract arm 5",
+        "slide arm left 2",
+    ]
+    assert value["of_excluded_rows"] == {"tries": 2, "replicated": 1, "came_back": 1}
+
+
+def test_all_rows_that_drifted_are_in_the_json_and_the_first_on_the_screen() -> None:
+    assert len(verification_json(MANY)["drifted"]) == 30
+    text = " ".join(drawn(verification_tables(MANY), 80).split())
+    assert f"{30 - MOST_ROWS} more, all in --json" in text
+    drifted = verification_json(BROKEN)["drifted"]
+    assert [row["affordance"] for row in drifted] == [10, 2, 4, 6]
+    assert drifted[0]["placing"] == "blocked"
+    assert (drifted[0]["times_successful"], drifted[0]["times_used"]) == (5, 6)
+
+
+def test_a_row_that_failed_twice_drifted_once() -> None:
+    twice = of(
+        [
+            checked(1, replicated=False, used=4, successful=4, row=7),
+            checked(2, replicated=False, used=5, successful=4, row=7),
+        ]
+    )
+    (row,) = verification_json(twice)["drifted"]
+    assert (row["times_successful"], row["times_used"]) == (4, 6)
+
+
+def test_without_live_rows_there_is_nothing_to_share() -> None:
+    value = verification_json(EXCLUDED)
+    assert value["verdict"] == "undecided"
+    assert value["by_behavior"] == value["by_region"] == value["drifted"] == []
