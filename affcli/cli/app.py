@@ -10,12 +10,14 @@ from affcli.cli import (
     doctor,
     figure,
     learn,
+    predict,
     replay,
     report,
     reproduce,
     solve,
     sql,
     table,
+    verify,
 )
 from affcli.cli.terminal import show_text
 
@@ -29,6 +31,8 @@ app = typer.Typer(
 app.command("learn")(learn.learn)
 app.command("solve")(solve.solve)
 app.command("break-tool")(break_tool.break_tool)
+app.command("verify")(verify.verify)
+app.command("predict")(predict.predict)
 app.command("report")(report.report)
 app.command("replay")(replay.replay)
 app.command("reproduce")(reproduce.reproduce)
