@@ -4,6 +4,7 @@ import typer
 
 from affcli.cli import figure_tested
 from affcli.cli.db import help_without_command
+from affcli.cli.figure_prediction import prediction
 
 app = typer.Typer(help="Figures for a paper: PNG, SVG or PDF.", rich_markup_mode=None)
 
@@ -17,3 +18,4 @@ def root(context: typer.Context) -> None:
 app.command("trial")(figure_tested.trial)
 app.command("results")(figure_tested.results)
 app.command("adaptation")(figure_tested.adaptation)
+app.command("prediction")(prediction)
