@@ -15,11 +15,13 @@ from tests.cli.program import ROOT, Ended, environment, names_in, one_printable_
 READING = (
     *(("report",), ("sql", "select count(*) from affordance"), ("db", "info")),
     *(("table", "list"), ("table", "show", "1"), ("table", "export")),
+    *(("verify", "--rows", "9"), ("predict", "--pushes", "9"), ("replay", "--all")),
 )
 WRITING = (
     ("learn", "--tool", "stick", "--behaviors", "5"),
     ("solve", "--goal", "2"),
     ("break-tool",),
+    ("verify", "--update"),
     ("reproduce", "--robots", "1"),
     ("db", "upgrade"),
 )

@@ -165,7 +165,7 @@ def test_a_table_learned_through_wild_noise_is_bad_input_that_names_the_row(
     assert "lower sensor.position_noise and learn again" in line
 
 
-def test_a_read_only_database_can_be_verified_but_not_updated(learned: Path) -> None:
+def test_a_table_can_be_verified_while_another_process_writes(learned: Path) -> None:
     with closing(sqlite3.connect(learned, isolation_level=None)) as driver:
         driver.execute("BEGIN IMMEDIATE")
         value = done(*verify(learned, "--rows", "5", "--json")).json
