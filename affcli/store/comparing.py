@@ -7,7 +7,7 @@ import sqlalchemy as sa
 
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.replay import Difference
-from affcli.core.trial import BabblingRecord, TrialEnd, TrialStep, Truth
+from affcli.core.trial import BabblingRecord, Counters, TrialEnd, TrialStep, Truth
 from affcli.store.connection import Connected
 from affcli.store.mapping import (
     affordance_from,
@@ -18,7 +18,7 @@ from affcli.store.mapping import (
     trial_end_columns,
 )
 from affcli.store.rows import AFFORDANCE_COLUMNS
-from affcli.store.tables import affordance, behavior, step, trial
+from affcli.store.tables import affordance, behavior, replication, step, trial, verification
 
 COUNTERS = frozenset({"times_used", "times_successful"})
 """Trials change them after a row is made."""
@@ -30,24 +30,33 @@ class Comparing(Connected):
     def table_before(self, trial_id: int) -> tuple[AffordanceTable, dict[int, int]]:
         """Return the affordance table that a trial which updates the stored counters began with.
 
-        A row has been used once when it was made, and once in each step of such trials before. Of
-        two that ran at the same time the one begun first is taken to have ended first.
+        A row has been used once when it was made, and once in each step of such trials and each try
+        of such verifications before. Of two that ran at the same time the one begun first is taken
+        to have ended first.
 
         Returns:
             The table; and the id of each row in the store by its learning step.
         """
-        t, s, a = trial.c, step.c, affordance.c
+        t, s, a, v, tried = trial.c, step.c, affordance.c, verification.c, replication.c
         run = sa.select(t.learning_run_id).where(t.id == trial_id).scalar_subquery()
         uses = (
-            sa.select(s.affordance_id, sa.func.count(), sa.func.sum(s.replicated))
+            sa.select(s.affordance_id, s.replicated)
             .select_from(step.join(trial, t.id == s.trial_id))
-            .where(t.learning_run_id == run, t.id < trial_id, t.counters == "stored")
-            .group_by(s.affordance_id)
+            .where(t.learning_run_id == run, t.id < trial_id, t.counters == Counters.STORED.value)
+            .union_all(
+                sa.select(tried.affordance_id, tried.replicated)
+                .select_from(replication.join(verification, v.id == tried.verification_id))
+                .where(v.learning_run_id == run, v.after_trial < trial_id)
+            )
+            .subquery()
         )
+        sums = sa.select(
+            uses.c.affordance_id, sa.func.count(), sa.func.sum(uses.c.replicated)
+        ).group_by(uses.c.affordance_id)
         with self.reading() as connection:
             rows = connection.execute(sa.select(affordance).where(a.learning_run_id == run))
             learned = rows.mappings().all()
-            used = {row_id: (tries, good) for row_id, tries, good in connection.execute(uses)}
+            used = {row_id: (tries, good) for row_id, tries, good in connection.execute(sums)}
         with reading_what_was_written(f"the affordance table before trial {trial_id}"):
             rows_then = []
             for row in learned:

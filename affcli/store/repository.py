@@ -1,5 +1,6 @@
 """The store as the rest of affcli sees it."""
 
+from affcli.store.adaptation import Adaptation
 from affcli.store.comparing import Comparing
 from affcli.store.learning import LearningRuns
 from affcli.store.records import Records

@@ -16,6 +16,7 @@ from affcli.lab.learning import learn
 from affcli.lab.replaying import CLOSE, replay_run, replay_trial
 from affcli.lab.reproduction import reproduce
 from affcli.lab.solving import solve
+from affcli.lab.verifying import verification_spec, verify
 from affcli.store import LearningRunInfo, Store, open_store
 from tests.lab.quick import IMPATIENT, LEISURELY, counted, now, spec_of
 
@@ -49,11 +50,13 @@ def test_all_96_trials_of_a_robot_are_what_their_record_says(store: Store) -> No
 def test_trials_that_update_the_stored_counters_begin_with_those_of_their_time(
     store: Store, run: LearningRunInfo
 ) -> None:
-    """`solve` again and again: each trial starts from what the ones before it left."""
+    """`solve` and `verify --update` again and again: each starts from what the others left."""
     for seed in range(3):
         counted(solve(store, [run], 2, [1, 2, 3, 4], seed, now))
     counted(break_tool(store, run, "l-hook", 0, now))
-    counted(solve(store, [run], 1, [1], 9, now))
+    spec = verification_spec(run, "l-hook", 3, None, 40, until_verdict=False)
+    counted(verify(store, run, spec, now, update=True))
+    counted(solve(store, [run], 1, [1, 2], 9, now))
     for trial in store.trials():
         assert replay_trial(store, trial.id).differences == (), trial
     table, ids = store.table_before(max(trial.id for trial in store.trials()))
