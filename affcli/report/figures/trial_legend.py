@@ -90,9 +90,9 @@ def legend_entries(trial: FilmedTrial, shown: Shown) -> list[Entry]:
     if trial.missing:
         entries.append(Entry("part that is missing", _missing))
     if any(step.blocked for step in last):
-        entries.append(Entry("blocked: tool held over the table", _held))
+        entries.append(Entry("blocked: held over the table", _held))
     if any(step.lost for step in last):
-        entries.append(Entry("row that the broken tool has lost", _frame))
+        entries.append(Entry("row the broken tool has lost", _frame))
     return [*entries, Entry("goal region", _goal)]
 
 
