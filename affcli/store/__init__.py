@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from affcli.store.opening import open_store, upgrade
     from affcli.store.packing import PackedRobot, pack_robot
     from affcli.store.place import Fact, State, place_facts
+    from affcli.store.progress import LearningInterval
     from affcli.store.query import QueryResult, run_sql
     from affcli.store.records import StoredRow, TrialInfo
     from affcli.store.repository import Store
@@ -38,6 +39,7 @@ __all__ = [
     "DatabaseInfo",
     "Fact",
     "Finding",
+    "LearningInterval",
     "LearningRunInfo",
     "LearningStep",
     "OutcomeCount",
@@ -77,6 +79,7 @@ _HOMES = {
     "opening": ("open_store", "upgrade"),
     "packing": ("PackedRobot", "pack_robot"),
     "place": ("Fact", "State", "place_facts"),
+    "progress": ("LearningInterval",),
     "query": ("QueryResult", "run_sql"),
     "records": ("StoredRow", "TrialInfo"),
     "repository": ("Store",),

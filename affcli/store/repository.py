@@ -3,6 +3,7 @@
 from affcli.store.adaptation import Adaptation
 from affcli.store.comparing import Comparing
 from affcli.store.learning import LearningRuns
+from affcli.store.progress import Progress
 from affcli.store.records import Records
 from affcli.store.results import Results
 from affcli.store.scenes import Scenes
@@ -21,6 +22,7 @@ class Store(
     Comparing,
     Selections,
     Adaptation,
+    Progress,
 ):
     """An open database: learning runs, trials, verifications, and results for reports.
 
