@@ -67,13 +67,22 @@ METADATA: dict[str, dict[str, None]] = {
 
 
 @contextmanager
+def style() -> Iterator[None]:
+    """Draw as affcli does inside the ``with`` block, whatever a ``matplotlibrc`` says."""
+    with mpl.rc_context():
+        mpl.rcdefaults()
+        mpl.rcParams.update(STYLE)
+        yield
+
+
+@contextmanager
 def canvas(width: float, height: float) -> Iterator[Figure]:
     """Give an empty figure in affcli's style; draw on it inside the ``with`` block.
 
     Args:
         width, height: in inches.
     """
-    with mpl.rc_context(STYLE):
+    with style():
         figure = Figure(figsize=(width, height), layout="constrained")
         FigureCanvasAgg(figure)
         yield figure
@@ -93,7 +102,7 @@ def encoded(figure: Figure, ending: str) -> bytes:
     if kind is None:
         raise BadInputError(f"{ending or 'no ending'}: figures are {', '.join(FORMATS)}")
     page = io.BytesIO()
-    with mpl.rc_context(STYLE):
+    with style():
         figure.savefig(page, format=kind, metadata=METADATA[kind])
     return page.getvalue()
 

@@ -1,0 +1,41 @@
+"""Words in figures: what others wrote is shown as it is, never read as a formula."""
+
+from typing import Any
+
+from affcli.core.behavior import BehaviorCall
+from affcli.errors import one_line
+
+LONGEST = 40
+"""Characters of a name that are shown."""
+
+
+def literal() -> dict[str, Any]:
+    """Return the keywords with which matplotlib draws a text as it is: a $ is a $."""
+    return {"parse_math": False}
+
+
+def shown(name: str) -> str:
+    """Return a name as a figure can show it: one line, of letters that the font has."""
+    line = one_line(name, LONGEST)
+    return line.encode("latin-1", "backslashreplace").decode("latin-1")
+
+
+def tool_words(name: str) -> str:
+    """Return a tool's name as the paper spells it: ``T-hook``."""
+    return shown(name[:1].upper() + name[1:])
+
+
+def behavior_words(call: BehaviorCall) -> str:
+    """Return a behavior's name as a sentence begins: ``Extend arm``."""
+    name = shown(call.name)
+    return name[:1].upper() + name[1:]
+
+
+def parameter_words(call: BehaviorCall) -> str:
+    """Return a behavior's parameters: ``2 in``."""
+    return ", ".join(f"{value:g} in" for _, value in call.params)
+
+
+def call_words(call: BehaviorCall) -> str:
+    """Return a behavior with its distance as a title: ``Extend arm, 2 in``."""
+    return ", ".join(filter(None, (behavior_words(call), parameter_words(call))))

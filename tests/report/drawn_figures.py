@@ -1,0 +1,108 @@
+"""Figures of hand-made tables, and a process that writes them.
+
+``python -m tests.report.drawn_figures`` prints the SHA-256 of every file it would make.
+"""
+
+import hashlib
+import sys
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+from affcli.behaviors.registry import paper_behaviors
+from affcli.core.affordance import Affordance
+from affcli.core.geometry import Point
+from affcli.core.tool import ToolName, paper_tools
+from affcli.core.workspace import Workspace
+from affcli.report.curves import Curve, ToolCurves
+from affcli.report.fates import Fate, RowView, TableView, compared
+from affcli.report.figures.affordances import affordances_figure
+from affcli.report.figures.canvas import FORMATS, encoded
+from affcli.report.figures.learning import bands_figure, curves_figure
+from affcli.report.figures.row import row_figure
+from affcli.report.figures.tools import tools_figure
+from affcli.report.figures.workspace import workspace_figure
+from affcli.simulation.arm import reach_at
+from tests.factories import affordance
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+WORKSPACE = Workspace()
+TOOLS = paper_tools(WORKSPACE.tools)
+T_HOOK, L_HOOK = TOOLS[ToolName("t-hook")], TOOLS[ToolName("l-hook")]
+REACH = reach_at(WORKSPACE.arm, WORKSPACE.arm.flange_height)
+CALLS = paper_behaviors(WORKSPACE.arm, WORKSPACE.motion, WORKSPACE.tools).exploratory
+KEY = {fate: f"what is {fate.value}" for fate in Fate}
+
+
+def table(*, first: int = 0, count: int = 24) -> list[Affordance]:
+    """Return rows of all eight behaviors, some of them so short that a head is half of them."""
+    return [
+        affordance(
+            step,
+            moved=(0.2 + 0.17 * step, 0.6 - 0.11 * step),
+            offset=Point(step / 4 - 3.0, 8.0 + step / 3),
+            call=CALLS[step % len(CALLS)],
+        )
+        for step in range(first, first + count)
+    ]
+
+
+def view(
+    rows: Sequence[tuple[Affordance, Fate]], heading: str = "", *, broken: bool = False
+) -> TableView:
+    """Return a table over the T-hook, or over what is left of it."""
+    tool = L_HOOK if broken else T_HOOK
+    missing = T_HOOK.parts_missing_in(tool)
+    return TableView(heading, tool.parts, missing, WORKSPACE.puck.radius, list(rows))
+
+
+def compared_views() -> list[TableView]:
+    """Return two tables that have some rows in common."""
+    tables = table(), table(first=8)
+    fates = compared(*tables)
+    return [
+        view(list(zip(rows, its, strict=True)), heading, broken=heading == "Run 2")
+        for rows, its, heading in zip(tables, fates, ("Run 1", "Run 2"), strict=True)
+    ]
+
+
+def curve(name: str, slope: float) -> Curve:
+    """Return a curve of 41 points that rises evenly."""
+    minutes = [1.5 * i for i in range(41)]
+    return Curve(name, minutes, [slope * m for m in minutes], [slope / 10.0 for _ in minutes])
+
+
+def bands() -> list[ToolCurves]:
+    """Return three robots with each of the five tools."""
+    return [
+        ToolCurves.of(name, [curve("", k + n / 4) for k in (1.0, 1.2, 1.7)])
+        for n, name in enumerate(TOOLS)
+    ]
+
+
+FIGURES: dict[str, Callable[[], "Figure"]] = {
+    "affordances": lambda: affordances_figure(
+        CALLS, [view([(row, Fate.ROW) for row in table()])], KEY
+    ),
+    "compared": lambda: affordances_figure(CALLS, compared_views(), KEY),
+    "row": lambda: row_figure(RowView(table()[3], T_HOOK, WORKSPACE.puck.radius)),
+    "workspace": lambda: workspace_figure(WORKSPACE, T_HOOK, REACH),
+    "tools": lambda: tools_figure(list(TOOLS.values()), (T_HOOK, L_HOOK), WORKSPACE.puck.radius),
+    "curves": lambda: curves_figure([curve(f"run {n}", n) for n in range(1, 13)]),
+    "bands": lambda: bands_figure(bands()),
+}
+
+
+def hashes() -> list[str]:
+    """Return one line a file: every figure as SVG, one of them in every format."""
+    files = [(name, ".svg") for name in FIGURES]
+    files += [("compared", ending) for ending in FORMATS if ending != ".svg"]
+    return [
+        f"{name}{ending} {hashlib.sha256(encoded(FIGURES[name](), ending)).hexdigest()}"
+        for name, ending in files
+    ]
+
+
+if __name__ == "__main__":
+    sys.stdout.write("\n".join(hashes()))
