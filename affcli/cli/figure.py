@@ -2,11 +2,16 @@
 
 import typer
 
-from affcli.cli import figure_tested
+from affcli.cli import figure_learned, figure_tested
 from affcli.cli.db import help_without_command
 from affcli.cli.figure_prediction import prediction
 
 app = typer.Typer(help="Figures for a paper: PNG, SVG or PDF.", rich_markup_mode=None)
+app.command("affordances")(figure_learned.affordances)
+app.command("row")(figure_learned.row)
+app.command("workspace")(figure_learned.workspace)
+app.command("tools")(figure_learned.tools)
+app.command("learning")(figure_learned.learning)
 
 
 @app.callback(invoke_without_command=True)

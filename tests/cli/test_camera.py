@@ -2,8 +2,6 @@
 
 import json
 import math
-import subprocess
-import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,12 +13,10 @@ from rich.cells import cell_len
 
 from tests.cli.camera_table import AS_IT_LIES, linked, located, photographed, place
 from tests.cli.program import (
-    PATIENCE,
     Arg,
     Ended,
     affcli,
     done,
-    environment,
     names_in,
     one_printable_line,
     refused,
@@ -28,6 +24,7 @@ from tests.cli.program import (
 )
 from tests.cli.pseudo_terminal import COLOR, ESCAPE, on_terminal
 from tests.cli.test_read_only import as_nobody
+from tests.cli.without import without
 
 ON_TABLE = {"puck": (-3.0, 22.4), "goal": (12.4, 22.4), "wrist": (0.0, 14.9)}
 """What lies where as a trial with the T-hook begins (in)."""
@@ -312,44 +309,6 @@ def test_where_one_may_not_write_or_read_is_named(public: Path) -> None:
         assert line.startswith(f"affcli: {path}: ")
         assert ": Permission denied; " in line
     assert names_in(public) == before
-
-
-WITHOUT = """
-import sys
-from importlib.machinery import PathFinder
-
-hidden = sys.argv.pop(1)
-
-
-class Finder(PathFinder):
-    @classmethod
-    def find_spec(cls, name, path=None, target=None):
-        if name.partition(".")[0] == hidden:
-            return None
-        return super().find_spec(name, path, target)
-
-
-sys.meta_path[sys.meta_path.index(PathFinder)] = Finder
-from affcli.cli.main import main
-
-sys.exit(main())
-"""
-"""The program where a package is not installed."""
-
-
-def without(package: str, *args: Arg) -> Ended:
-    """Run the program where a package is not installed."""
-    ended = subprocess.run(
-        [sys.executable, "-c", WITHOUT, package, *args],
-        env=environment(),
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        timeout=PATIENCE,
-        check=False,
-    )
-    assert "Traceback" not in ended.stderr, ended.stderr
-    return Ended(ended.returncode, ended.stdout, ended.stderr)
 
 
 @pytest.mark.parametrize("package", ["cv2", "PIL", "scipy"])

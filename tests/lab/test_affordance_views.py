@@ -1,0 +1,164 @@
+"""Tables and rows gathered for figures say what the store says."""
+
+import itertools
+import sqlite3
+from collections import Counter
+from contextlib import closing
+
+import pytest
+
+from affcli.config import settings_with
+from affcli.core.trial import Protocol
+from affcli.errors import DatabaseError, UsageError
+from affcli.lab.affordance_views import (
+    row_shown,
+    table_of_run,
+    tables_around_trial,
+    tables_compared,
+)
+from affcli.lab.breaking import break_tool
+from affcli.lab.learning import learn
+from affcli.lab.solving import solve
+from affcli.report.fates import Fate, TableView
+from affcli.store import LearningRunInfo, Store
+from tests.lab.quick import IMPATIENT, counted, now, spec_of, taken
+
+BLURRED = settings_with({"sensor": {"position_noise": 0.25}, "trial": {"max_steps": 6}}, "a test")
+
+
+@pytest.fixture
+def run(store: Store) -> LearningRunInfo:
+    """A T-hook's learning run, in the store."""
+    return learn(store, spec_of("t-hook", 300, settings=IMPATIENT), now).info
+
+
+def counts(view: TableView) -> Counter[Fate]:
+    return Counter(fate for _, fate in view.rows)
+
+
+def names(view: TableView) -> tuple[set[str], set[str]]:
+    """Return the parts that a view's tool has, and those it has lost."""
+    return {part.name for part in view.parts}, {part.name for part in view.missing}
+
+
+def test_the_table_of_a_run_has_all_its_rows(store: Store, run: LearningRunInfo) -> None:
+    shown = table_of_run(store, run)
+    (view,) = shown.views
+    assert [row for row, _ in view.rows] == [stored.row for stored in store.affordances(run.id)]
+    assert counts(view) == {Fate.ROW: run.rows}
+    assert len(shown.calls) == 8
+    assert shown.title == f"run {run.id}, t-hook, {run.rows} rows"
+
+
+def test_rows_that_solving_excluded_are_told_apart(store: Store, run: LearningRunInfo) -> None:
+    for stored in store.affordances(run.id)[:5]:
+        with closing(sqlite3.connect(store.path)) as driver, driver:
+            driver.execute(f"UPDATE affordance SET times_used = 2 WHERE id = {stored.id}")
+    shown = table_of_run(store, run)
+    assert [fate for _, fate in shown.views[0].rows][:5] == [Fate.EXCLUDED] * 5
+    assert counts(shown.views[0]) == {Fate.ROW: run.rows - 5, Fate.EXCLUDED: 5}
+    assert shown.title.endswith("rows, 5 of them excluded")
+
+
+def test_a_trial_with_a_broken_tool_loses_the_rows_that_died_in_it(
+    store: Store, run: LearningRunInfo
+) -> None:
+    counted(break_tool(store, run, "l-hook", 0, now))
+    trials = store.trials(run_id=run.id)
+    broken = [t for t in trials if t.spec.protocol is Protocol.TOOL_ADAPTATION]
+    died = {t.id: {s.affordance_id for s in store.trial_steps(t.id) if s.died} for t in trials}
+    assert any(died[t.id] for t in broken)
+    for trial in trials:
+        shown = tables_around_trial(store, trial.id)
+        before, after = shown.views
+        ids = [stored.id for stored in store.affordances(run.id)]
+        assert counts(before) == {Fate.ROW: run.rows}
+        lost = {i for i, (_, fate) in zip(ids, after.rows, strict=True) if fate is Fate.LOST}
+        assert lost == died[trial.id]
+        assert counts(after)[Fate.KEPT] == run.rows - len(lost)
+        whole = {"handle", "left bar", "right bar", "left hook", "right hook"}
+        assert names(before) == (whole, set())
+        missing = {"right bar", "right hook"} if trial in broken else set()
+        assert names(after) == (whole - missing, missing)
+        assert f"{len(lost)} lost" in shown.title
+        assert ("became l-hook" in shown.title) == (trial in broken)
+
+
+def test_after_the_last_trial_of_solving_the_table_is_as_it_is_stored(store: Store) -> None:
+    """Through a sensor so bad that rows die: what each trial found and left adds up."""
+    run = learn(store, spec_of("t-hook", 300, settings=BLURRED), now).info
+    counted(solve(store, [run], 1, (1, 2, 3, 4), 0, now))
+    counted(solve(store, [run], 3, (1, 2, 3, 4), 0, now))
+    trials = store.trials(run_id=run.id)
+    assert any(store.rows_excluded_before(trial.id) for trial in trials)
+    stored = table_of_run(store, run).views[0]
+    gone = {Fate.LOST, Fate.EXCLUDED}
+    last = tables_around_trial(store, trials[-1].id).views[1]
+    assert [f in gone for _, f in last.rows] == [f is Fate.EXCLUDED for _, f in stored.rows]
+    for one, following in itertools.pairwise(trials):
+        left = tables_around_trial(store, one.id).views[1]
+        found = tables_around_trial(store, following.id).views[0]
+        assert [f in gone for _, f in left.rows] == [f is Fate.EXCLUDED for _, f in found.rows]
+
+
+def test_two_runs_are_compared_each_over_its_own_tool(store: Store, run: LearningRunInfo) -> None:
+    other = learn(store, spec_of("l-hook", 300, settings=IMPATIENT), now).info
+    shown = tables_compared(store, run, other)
+    before, after = shown.views
+    assert (before.heading, after.heading) == (f"Run {run.id}: T-hook", f"Run {other.id}: L-hook")
+    assert set(counts(before)) <= {Fate.KEPT, Fate.LOST}
+    assert set(counts(after)) <= {Fate.KEPT, Fate.WON}
+    assert (len(before.rows), len(after.rows)) == (run.rows, other.rows)
+    assert names(after)[1] == {"right bar", "right hook"}
+    # What hangs on the right bar and hook alone the L-hook cannot have learned.
+    pulls_on_the_right = [
+        fate
+        for row, fate in before.rows
+        if row.exploratory.name == "contract arm" and row.start.wrist_to_object_x > 2.5
+    ]
+    assert pulls_on_the_right
+    assert set(pulls_on_the_right) == {Fate.LOST}
+    with pytest.raises(UsageError, match="that is the run itself"):
+        tables_compared(store, run, run)
+
+
+def test_an_unfinished_run_says_how_far_it_came(store: Store) -> None:
+    spec = spec_of("t-hook", 600)
+    info = store.begin_learning(spec, {}, now())
+    assert table_of_run(store, info).title == (
+        f"run {info.id}, t-hook (unfinished, 0 min 00 s so far), 0 rows"
+    )
+
+
+def test_a_row_is_shown_with_the_tool_of_its_own_settings(
+    store: Store, run: LearningRunInfo
+) -> None:
+    stored = store.affordances(run.id)[2]
+    title, view = row_shown(store, stored.id)
+    assert view.row == stored.row
+    assert view.tool.name == "t-hook"
+    assert view.puck_radius == 1.5
+    assert title == f"row {stored.id}, t-hook, {stored.row.exploratory} (run {run.id})"
+
+
+@pytest.mark.parametrize(
+    ("spoilt", "says"),
+    [
+        ("learning_run SET tool = 'spoon'", "holds a tool that affcli does not know"),
+        ("affordance SET end_object_x = 1e300", "holds a value that affcli did not write"),
+        ("affordance SET start_object_y = 9e999", "holds a value that affcli did not write"),
+    ],
+)
+def test_what_affcli_did_not_write_is_named(
+    spoilt: str, says: str, store: Store, run: LearningRunInfo
+) -> None:
+    with closing(sqlite3.connect(store.path)) as driver, driver:
+        driver.execute(f"UPDATE {spoilt}")
+    with pytest.raises(DatabaseError, match=says):
+        table_of_run(store, store.learning_run(run.id))
+
+
+def test_an_interrupted_trial_shows_what_was_done(store: Store, run: LearningRunInfo) -> None:
+    taken(solve(store, [run], 2, (1,), 0, now), 1)
+    shown = tables_around_trial(store, 1)
+    assert "trial 1, t-hook (unfinished, 1 step so far): " in shown.title
