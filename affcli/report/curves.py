@@ -9,7 +9,7 @@ from typing import Protocol
 
 from affcli.report.statistics import HIGH, LOW, quantile
 
-INTERVALS = 120
+INTERVALS = 60
 """Points of a curve."""
 ENOUGH_BEHAVIORS = 20
 """Of fewer, a share says hardly anything: the curve of the share begins there."""

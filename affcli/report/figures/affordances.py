@@ -153,9 +153,7 @@ def affordances_figure(
             for (row, column), call in panels.items():
                 axes = figure.add_axes(layout.place(begins, row, column))
                 _draw_panel(axes, view, call, extent)
-                _label(
-                    axes, layout.panel[0], left=column == 0, last=(row + 1, column) not in panels
-                )
+                _label(axes, layout.panel, left=column == 0, last=(row + 1, column) not in panels)
                 if row == column == 0:
                     _draw_scale(axes, view, extent)
         if len(kinds) > 1:
@@ -165,7 +163,7 @@ def affordances_figure(
 
 def _draw_panel(axes: "Axes", view: TableView, call: BehaviorCall, extent: Extent) -> None:
     """Draw the rows of one behavior and distance over the tool."""
-    axes.set_title(call_words(call), pad=3.0, **literal())
+    axes.set_title(call_words(call), y=1.0, pad=3.0, **literal())
     draw_parts(axes, view.parts)
     draw_parts(axes, view.missing, missing=True)
     draw_grasp(axes)
@@ -184,8 +182,8 @@ def _draw_panel(axes: "Axes", view: TableView, call: BehaviorCall, extent: Exten
     axes.set_aspect("equal", adjustable="box")
     axes.set_xlim(extent.left, extent.right)
     axes.set_ylim(extent.bottom, extent.top)
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(MaxNLocator(5, steps=(1, 2, 5, 10)))
+    axes.set_xticks(_ticks(extent.left, extent.right))
+    axes.set_yticks(_ticks(extent.bottom, extent.top))
 
 
 def _draw_scale(axes: "Axes", view: TableView, extent: Extent) -> None:
@@ -198,12 +196,21 @@ def _draw_scale(axes: "Axes", view: TableView, extent: Extent) -> None:
     axes.text(middle.x, above, "puck", ha="center", va="bottom", fontsize=6.0)
 
 
-def _label(axes: "Axes", across: float, *, left: bool, last: bool) -> None:
+def _ticks(low: float, high: float) -> list[float]:
+    """Return round numbers within bounds, once for all panels."""
+    return [
+        float(tick)
+        for tick in MaxNLocator(5, steps=(1, 2, 5, 10)).tick_values(low, high)
+        if low <= tick <= high
+    ]
+
+
+def _label(axes: "Axes", panel: tuple[float, float], *, left: bool, last: bool) -> None:
     """Write numbers and words at the left of the first panels and below the last ones.
 
     Args:
         axes: a panel.
-        across: its width (in of the page).
+        panel: its width and height (in of the page).
         left: it is one of the first.
         last: it is one of the last.
     """
@@ -211,9 +218,10 @@ def _label(axes: "Axes", across: float, *, left: bool, last: bool) -> None:
     if left:
         axes.set_ylabel("y from the wrist (in)")
         # However wide the numbers are: at the edge of the table's room.
-        axes.yaxis.set_label_coords((0.13 - LEFT) / across, 0.5)
+        axes.yaxis.set_label_coords((0.13 - LEFT) / panel[0], 0.5)
     if last:
-        axes.set_xlabel("x from the wrist (in)", labelpad=2.0)
+        axes.set_xlabel("x from the wrist (in)")
+        axes.xaxis.set_label_coords(0.5, (0.13 - BELOW) / panel[1])
 
 
 def _draw_key(figure: "Figure", kinds: Sequence[Fate], key: Mapping[Fate, str]) -> None:

@@ -27,6 +27,9 @@ HIGHEST, LOWEST = 5.0, 2.0
 def workspace_figure(workspace: Workspace, tool: Tool, reach: Reach) -> "Figure":
     """Return the table from above: goals, starts, the tool at its start, the bare arm's reach.
 
+    The arm of the default settings reaches to 0.04 in from its middle: the inner of the two dashed
+    bounds is a dot.
+
     Args:
         workspace: the sizes.
         tool: which lies at the centre of the table.
