@@ -8,7 +8,7 @@ import cv2
 import pytest
 
 from tests.cli.program import Arg, done, executed, names_in, refused, rows
-from tests.cli.test_camera import without
+from tests.cli.without import without
 
 FIGURES: dict[str, tuple[str, ...]] = {
     "trial": ("trial", "9"),

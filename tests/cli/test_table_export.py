@@ -28,8 +28,8 @@ from tests.cli.program import (
 )
 from tests.cli.pseudo_terminal import on_terminal
 from tests.cli.table_rows import EVIL, listed, tamper, vary_counters
-from tests.cli.test_camera import without
 from tests.cli.test_read_only import as_nobody
+from tests.cli.without import without
 
 RELATIONS = {"behaviors": "behavior", "trials": "trial", "steps": "step"}
 INSTALL = "affcli: Parquet needs pyarrow; install it: pip install 'affcli[parquet]'\n"
