@@ -7,7 +7,7 @@ from statistics import fmean, stdev
 from typing import Protocol
 
 from affcli.report.reproduction import ENOUGH_ROBOTS
-from affcli.report.statistics import Z95
+from affcli.report.statistics import Z95, wilson
 
 
 class Sums(Protocol):
@@ -149,16 +149,7 @@ def share_interval(groups: Sequence[tuple[int, int]]) -> tuple[float, float]:
         squares = sum((k - share * m) ** 2 for k, m in groups)
         between = len(groups) / (len(groups) - 1) * squares / n**2
         effect = max(1.0, between / alone)
-    return wilson(share, n / effect)
-
-
-def wilson(share: float, n: float) -> tuple[float, float]:
-    """Return Wilson's 95 % interval of a share seen in `n` independent trials."""
-    z = Z95 * Z95 / n
-    middle = (share + z / 2.0) / (1.0 + z)
-    half = math.sqrt(z * (share * (1.0 - share) + z / 4.0)) / (1.0 + z)
-    # Rounding must not push an end past the share itself, where it is 0 or 1.
-    return min(share, max(0.0, middle - half)), max(share, min(1.0, middle + half))
+    return wilson(kind / effect, n / effect)
 
 
 def probabilities_of(groups: Sequence[Group], last: int) -> tuple[MeanProbability, ...]:

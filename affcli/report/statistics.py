@@ -14,8 +14,12 @@ Value = TypeVar("Value", int, float)
 Z95 = NormalDist().inv_cdf(HIGH)
 
 
-def wilson(successes: int, tries: int) -> tuple[float, float]:
-    """Return the 95 % interval of a share by Wilson's score (1927); (0, 1) without tries."""
+def wilson(successes: float, tries: float) -> tuple[float, float]:
+    """Return the 95 % interval of a share by Wilson's score (1927); (0, 1) without tries.
+
+    Args:
+        successes, tries: counts; parts of them where several tries tell no more than one.
+    """
     if tries == 0:
         return 0.0, 1.0
     share, z2 = successes / tries, Z95 * Z95
