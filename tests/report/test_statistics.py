@@ -78,3 +78,14 @@ def test_all_or_none_end_the_interval_and_nothing_leaves_it_open() -> None:
     assert wilson(0, 7)[0] == 0.0
     assert wilson(7, 7)[1] == 1.0
     assert wilson(0, 0) == (0.0, 1.0)
+
+
+def test_wilson_s_interval_is_that_of_a_published_table() -> None:
+    """Newcombe 1998 (Statistics in Medicine 17), table I."""
+    for kind, n, low, high in (
+        (81, 263, 0.2553, 0.3662),
+        (15, 148, 0.0624, 0.1605),
+        (0, 20, 0.0, 0.1611),
+        (1, 29, 0.0061, 0.1718),
+    ):
+        assert wilson(kind, n) == pytest.approx((low, high), abs=5e-5)
