@@ -7,7 +7,7 @@ import sqlalchemy as sa
 
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.replay import Difference
-from affcli.core.trial import BabblingRecord, Counters, TrialEnd, TrialStep, Truth
+from affcli.core.trial import BabblingRecord, Counters, Survivors, TrialEnd, TrialStep, Truth
 from affcli.store.connection import Connected
 from affcli.store.mapping import (
     affordance_from,
@@ -22,6 +22,8 @@ from affcli.store.tables import affordance, behavior, replication, step, trial, 
 
 COUNTERS = frozenset({"times_used", "times_successful"})
 """Trials change them after a row is made."""
+LAST_ROWS = tuple(f"last_rows_{name}" for name in Survivors._fields)
+"""Of a trial; empty but for one that found no row."""
 
 
 class Comparing(Connected):
@@ -90,9 +92,10 @@ class Comparing(Connected):
             ending = connection.execute(sa.select(trial).filter_by(id=trial_id)).mappings().one()
         found = list(_differences(stored, again))
         if end is not None:
+            ended = dict.fromkeys(LAST_ROWS) | trial_end_columns(end)
             found += [
                 Difference(0, column, ending[column], value)
-                for column, value in trial_end_columns(end).items()
+                for column, value in ended.items()
                 if ending[column] != value
             ]
         return tuple(found)

@@ -65,7 +65,7 @@ def reading_what_was_written(place: str) -> Iterator[None]:
     """
     try:
         yield
-    except (ValueError, TypeError, KeyError, AttributeError) as error:
+    except (ValueError, TypeError, KeyError, AttributeError, OverflowError) as error:
         raise DatabaseError(
             f"{place} holds a value that affcli did not write; restore a copy of the database"
         ) from error

@@ -119,7 +119,8 @@ class Records(Connected):
         wanted = (
             sa.select(trial, *about)
             .select_from(
-                trial.join(session, session.c.id == trial.c.session_id).join(
+                # Outer: a trial whose session or learning run is gone is named, not left out.
+                trial.outerjoin(session, session.c.id == trial.c.session_id).outerjoin(
                     learning_run, learning_run.c.id == trial.c.learning_run_id
                 )
             )
@@ -150,6 +151,8 @@ def stored_row(row: sa.RowMapping) -> StoredRow:
 def _trial_info(row: sa.RowMapping) -> TrialInfo:
     """Return a trial from its columns, those of its session and of its learning run."""
     with reading_what_was_written(f"trial {row['id']}"):
+        if row["kind"] is None or row["settings"] is None:
+            raise ValueError("its session or learning run is gone")
         return TrialInfo(
             id=row["id"],
             session_id=row["session_id"],
