@@ -1,7 +1,8 @@
 """The table as a picture made of letters: braille dots, or plain letters where there are none."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
@@ -78,9 +79,19 @@ class View:
         across, down = np.meshgrid(x, y)
         return across, down
 
+    def dots_at(self, places: Sequence[Point]) -> NDArray[np.bool_]:
+        """Return which dots have one of the places (in) in them, (rows * 4, columns * 2)."""
+        dots = np.zeros((self.rows * DOWN, self.columns * ACROSS), bool)
+        x, y = np.array(places, float).reshape(-1, 2).T
+        row = np.floor((self.top - y) / self.inches).astype(int)
+        column = np.floor((x - self.left) / self.inches).astype(int)
+        seen = (row >= 0) & (row < dots.shape[0]) & (column >= 0) & (column < dots.shape[1])
+        dots[row[seen], column[seen]] = True
+        return dots
+
 
 def table_map(
-    scene: Scene, workspace: Workspace, path: list[Point], view: View, *, braille: bool
+    scene: Scene, workspace: Workspace, path: Sequence[Point], view: View, *, braille: bool
 ) -> Text:
     """Return what is on the table as lines of letters, the robot at the lower edge.
 
@@ -100,20 +111,19 @@ def table_map(
     if scene.goal is not None:
         (gx, gy), half = scene.goal.center, scene.goal.half_width
         layers.append((GOAL, _frame(gx - half, gy - half, gx + half, gy + half, line)(x, y)))
-    been = np.zeros(x.shape, bool)
-    for place in path:
-        been |= np.hypot(x - place.x, y - place.y) < 0.8 * view.inches
-    layers.append((PATH, been))
+    layers.append((PATH, view.dots_at(path)))
     held = np.zeros(x.shape, bool)
     for part in scene.tool.outlines:
-        held |= _polygon(part, scene.wrist, line)(x, y)
+        held |= _polygon(part, scene.wrist, view.inches)(x, y)
     if scene.lift > 0.0:
         # A tool in the air hides nothing: every other dot.
         rows, columns = np.indices(x.shape)
         held &= (rows + columns) % 2 == 0
     layers.append((TOOL, held))
     center = scene.attractor
-    layers.append((PUCK, np.hypot(x - center.x, y - center.y) <= workspace.puck.radius))
+    # The middle of the nearest dot lies within 0.71 of a dot: the smallest puck is one.
+    radius = max(workspace.puck.radius, 0.71 * view.inches)
+    layers.append((PUCK, np.hypot(x - center.x, y - center.y) <= radius))
     return _letters(layers, view, braille=braille)
 
 
@@ -128,15 +138,14 @@ def _letters(layers: list[tuple[Layer, NDArray[np.bool_]]], view: View, *, brail
         uppermost[dots.any(axis=(2, 3))] = number
     text = Text(no_wrap=True)
     for row in range(view.rows):
-        for column in range(view.columns):
-            number = uppermost[row, column]
-            if number < 0:
-                text.append(" ")
-                continue
-            layer = layers[number][0]
-            text.append(chr(0x2800 + bits[row, column]) if braille else layer.letter, layer.style)
-        if row + 1 < view.rows:
-            text.append("\n")
+        text.append("\n" if row else "")
+        for highest, run in groupby(range(view.columns), key=uppermost[row].__getitem__):
+            if highest < 0:
+                text.append(" " * len(list(run)))
+            else:
+                letter, style = layers[highest][0]
+                shown = (chr(0x2800 + bits[row, k]) if braille else letter for k in run)
+                text.append("".join(shown), style)
     return text
 
 
