@@ -1,15 +1,20 @@
-"""What figures need beside affcli itself."""
+"""Figures: what must be installed to draw them."""
 
 from importlib.util import find_spec
 
 from affcli.errors import UsageError
 
+FIGURE_PACKAGES = ("matplotlib", "PIL")
+
 
 def require_figures() -> None:
-    """Make sure that matplotlib is installed.
+    """Make sure that the packages which draw figures are installed.
 
     Raises:
-        UsageError: it is missing.
+        UsageError: one is missing.
     """
-    if find_spec("matplotlib") is None:
-        raise UsageError("figures need matplotlib; install it: pip install 'affcli[figures]'")
+    missing = [name for name in FIGURE_PACKAGES if find_spec(name) is None]
+    if missing:
+        raise UsageError(
+            "figures need Matplotlib and Pillow; install them: pip install 'affcli[figures]'"
+        )

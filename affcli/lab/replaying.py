@@ -1,18 +1,21 @@
 """Doing again what the database holds, scene by scene, held against the record (§6, §7)."""
 
-from collections.abc import Callable, Iterator, Sequence
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
 
-from affcli.config import settings_from_json
+from affcli.behaviors.registry import paper_behaviors
+from affcli.config import LARGEST, Settings, settings_from_json
 from affcli.core.affordance_table import AffordanceTable
+from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Observation
 from affcli.core.ports import Robot
 from affcli.core.replay import Considered, Replay, ReplayedBehavior, ReplayedStep
 from affcli.core.scene import Scene
-from affcli.core.task import GoalRegion
+from affcli.core.task import GOAL_NUMBERS, START_NUMBERS, GoalRegion
 from affcli.core.tool import TOOL_PARTS
 from affcli.core.trial import Counters, TrialStep
 from affcli.errors import DatabaseError
@@ -25,6 +28,7 @@ from affcli.store import LearningRunInfo, Store
 
 CLOSE = 5
 """Rows remembered of those that search 4 chose from, the chosen one among them."""
+REMEDY = "restore a copy of the database"
 
 
 class _Onlooker:
@@ -61,20 +65,31 @@ def replay_trial(store: Store, trial_id: int) -> Replay:
 
     Raises:
         UsageError: there is none of that number.
-        DatabaseError: it holds a tool that affcli does not know.
+        DatabaseError: it, or the table it began with, holds a value that affcli does not know.
     """
     trial = store.trial(trial_id)
     settings = settings_from_json(trial.settings)
     spec = trial.spec
-    if not {spec.tool, spec.shape} <= set(TOOL_PARTS):
-        raise DatabaseError(f"trial {trial_id} holds a tool that affcli does not know")
+    if not (
+        {spec.tool, spec.shape} <= set(TOOL_PARTS)
+        and spec.goal in GOAL_NUMBERS
+        and spec.start in START_NUMBERS
+        and min(spec.seed, spec.robot) >= 0
+    ):
+        raise DatabaseError(
+            f"trial {trial_id} holds a tool, goal, start or seed that affcli does not know; "
+            f"{REMEDY}"
+        )
     if spec.counters is Counters.STORED:
         table, ids = store.table_before(trial_id)
     else:
         table, ids = store.affordance_table(trial.run_id, as_learned=True)
+    _require_sound(table, settings, trial.run_id)
     lost = None
     if spec.shape != spec.tool:
-        lost = LostAffordances(settings, spec.shape, store.row_starts(trial.run_id))
+        starts = store.row_starts(trial.run_id)
+        _require_starts(starts, table, trial.run_id)
+        lost = LostAffordances(settings, spec.shape, starts)
     recorded = len(store.trial_steps(trial_id))
     world = World(settings.workspace, settings.physics)
     onlooker = _Onlooker(ids)
@@ -86,7 +101,8 @@ def replay_trial(store: Store, trial_id: int) -> Replay:
     opening: Scene | None = None
     for record, truth in wanted:
         judged = lost.lost(record.row) if lost is not None else None
-        scenes = onlooker.reel.cut()
+        # Arms that are very quick leave no time for a frame.
+        scenes = onlooker.reel.cut() or (world.scene,)
         opening = opening or scenes[0]
         steps.append(_replayed(TrialStep(record, truth, judged), onlooker, scenes))
     end = running.end if trial.outcome is not None else None
@@ -95,6 +111,36 @@ def replay_trial(store: Store, trial_id: int) -> Replay:
         *(trial_id, trial.run_id, spec, settings.workspace),
         *(opening or world.scene, tuple(steps), end, differences),
     )
+
+
+def _require_sound(table: AffordanceTable, settings: Settings, run_id: int) -> None:
+    """Make sure that all rows can be executed; DatabaseError when one cannot."""
+    space = settings.workspace
+    known = set(paper_behaviors(space.arm, space.motion, space.tools).exploratory)
+    for row in table:
+        if row.exploratory not in known or not _sound(*row.start, *row.end):
+            raise DatabaseError(
+                f"row {row.step} of learning run {run_id} holds a behavior or a place that affcli "
+                f"does not know; {REMEDY}"
+            )
+
+
+def _require_starts(
+    starts: Mapping[int, tuple[Point, Pose]], table: AffordanceTable, run_id: int
+) -> None:
+    """Make sure that it is known where each row was made; DatabaseError when it is not."""
+    for row in table:
+        wrist, attractor = starts.get(row.step, (Point(math.nan, 0.0), Pose(0.0, 0.0)))
+        if not _sound(*wrist, *attractor):
+            raise DatabaseError(
+                f"behavior {row.step} of learning run {run_id} does not say where it began; "
+                f"{REMEDY}"
+            )
+
+
+def _sound(*values: float) -> bool:
+    """Tell whether all are numbers of this laboratory: no NaN, nothing far beyond it."""
+    return all(abs(value) <= LARGEST for value in values)
 
 
 def _replayed(step: TrialStep, onlooker: _Onlooker, scenes: tuple[Scene, ...]) -> ReplayedStep:
@@ -127,9 +173,16 @@ def replay_run(
     Yields:
         Each behavior from `first` on, as soon as it is done; before that, those of the earlier ones
         that differ from their record.
+
+    Raises:
+        DatabaseError: it holds a value that affcli does not know.
     """
-    if run.spec.tool not in TOOL_PARTS:
-        raise DatabaseError(f"learning run {run.id} holds a tool that affcli does not know")
+    spec = run.spec
+    if spec.tool not in TOOL_PARTS or min(spec.seed, spec.robot, run.behaviors) < 0:
+        raise DatabaseError(
+            f"learning run {run.id} holds a tool, seed or number of behaviors that affcli does not "
+            f"know; {REMEDY}"
+        )
     learning = LearningRun(run.spec)
     reel = Reel()
     if first == 1:
@@ -141,9 +194,15 @@ def replay_run(
             reel.skip_to(learning.bench.robot.clock)
             learning.bench.robot.film = reel
         differences = store.behavior_differences(run.id, run.spec.tool, [(record, truth)])
-        scenes = reel.cut()
+        scenes = reel.cut() or (learning.bench.world.scene,)
         if record.step >= first or differences:
             yield ReplayedBehavior(record, truth, scenes, differences)
+
+
+def film_length(replay: Replay, numbers: Sequence[int], speed: float) -> int:
+    """Return how many pictures `gif_of` draws of some steps of a trial."""
+    frames = sum(len(replay.steps[number - 1].scenes) for number in numbers)
+    return 1 + math.ceil((frames - 1) / _every(speed)) if frames else 0
 
 
 def gif_of(
@@ -159,18 +218,22 @@ def gif_of(
         numbers: of the steps, counting from 1.
         speed: of the film, 1 for that of the robot. Frames are left out rather than shown faster
             than a viewer can.
-        drawn: told how many frames have been drawn, each time one more is.
+        drawn: told how many pictures have been drawn, each time one more is.
     """
     from affcli.perception.animation import gif
-    from affcli.report.figures.film import pictures_of
+    from affcli.report.figures.film import colors_of, pictures_of
 
-    every = max(1, round(speed))
+    every = _every(speed)
 
-    def shown() -> Iterator[NDArray[np.uint8]]:
-        """Yield the frames that are kept."""
-        for number, picture in enumerate(pictures_of(replay, numbers)):
-            drawn(number + 1)
-            if number % every == 0:
-                yield picture
+    def pictures() -> Iterator[NDArray[np.uint8]]:
+        """Yield the pictures, and say so."""
+        for number, picture in enumerate(pictures_of(replay, numbers, every), 1):
+            drawn(number)
+            yield picture
 
-    return gif(shown(), 1e3 * every / FRAME_RATE / speed)
+    return gif(pictures(), 1e3 * every / FRAME_RATE / speed, colors_of(replay))
+
+
+def _every(speed: float) -> int:
+    """Return which share of the frames is in a film: each one, each second, and so on."""
+    return max(1, round(speed))

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from affcli.config import Settings
+from affcli.config import Settings, settings_with
 from affcli.core.behavior import ExecutionStatus
 from affcli.core.replay import Replay
 from affcli.errors import UsageError
 from affcli.lab.breaking import break_tool
 from affcli.lab.filming import FRAME_RATE
 from affcli.lab.learning import learn
-from affcli.lab.replaying import CLOSE, replay_run, replay_trial
+from affcli.lab.replaying import CLOSE, film_length, gif_of, replay_run, replay_trial
 from affcli.lab.reproduction import reproduce
 from affcli.lab.solving import solve
 from affcli.lab.verifying import verification_spec, verify
@@ -141,6 +141,30 @@ def test_the_row_chosen_comes_first_among_those_considered(replay: Replay) -> No
             start, end = record.placing.wrist_start, record.placing.wrist_end
             went = ((end.x - start.x) ** 2 + (end.y - start.y) ** 2) ** 0.5
             assert travels[0] == pytest.approx(went, abs=0.01)
+
+
+def test_of_arms_too_quick_for_a_frame_there_is_a_scene_too(store: Store) -> None:
+    """Though none of the 15 a second falls into a step."""
+    speeds = ("push_speed", "transfer_speed", "lift_speed", "push_acceleration")
+    quick = dict.fromkeys((*speeds, "transfer_acceleration"), 1e6) | {"hold": 0.0}
+    settings = settings_with({"motion": quick, "trial": {"max_steps": 4}}, "a test")
+    run = learn(store, spec_of(behaviors=300, settings=settings), now).info
+    counted(solve(store, [run], 1, [1], 0, now))
+    replay = replay_trial(store, 1)
+    assert replay.differences == ()
+    assert replay.steps
+    assert any(one.scenes[-1].attractor == one.step.truth.end for one in replay.steps)
+    assert all(one.scenes for one in replay.steps)
+    assert all(behavior.scenes for behavior in replay_run(store, run, 2, 9))
+
+
+@pytest.mark.parametrize("speed", [0.2, 1.0, 1.4, 1.6, 7.0, 100.0])
+def test_a_film_has_as_many_pictures_as_was_said(replay: Replay, speed: float) -> None:
+    for numbers in ([1], range(1, len(replay.steps) + 1)):
+        drawn: list[int] = []
+        gif_of(replay, numbers, speed, drawn.append)
+        assert drawn == list(range(1, film_length(replay, numbers, speed) + 1))
+    assert film_length(replay, [], speed) == 0
 
 
 def test_a_learning_run_is_done_again(store: Store) -> None:

@@ -1,6 +1,7 @@
 """A replay as pictures: the table from above, drawn quickly, one picture a frame (§4: 15 Hz)."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -9,7 +10,7 @@ from matplotlib.patches import Circle, Rectangle
 from numpy.typing import NDArray
 
 from affcli.core.geometry import Point
-from affcli.core.replay import Replay
+from affcli.core.replay import Replay, ReplayedStep
 from affcli.core.scene import Scene
 from affcli.core.task import GoalRegion
 from affcli.core.tool import Color
@@ -109,30 +110,50 @@ class Film:
         self._kept = self._canvas.copy_from_bbox(self._whole)
 
 
-def pictures_of(replay: Replay, numbers: Iterable[int]) -> Iterator[Picture]:
+def colors_of(replay: Replay) -> Picture:
+    """Return a picture in which all colours of a trial's film are: the tool lifted, and not."""
+    film = Film(replay.workspace, replay.opening.goal)
+    title = step_title(replay, 1)
+    return np.concatenate(
+        [film.picture(replace(replay.opening, lift=lift), (), title, title) for lift in (0.0, 1.0)]
+    )
+
+
+def pictures_of(replay: Replay, numbers: Iterable[int], every: int = 1) -> Iterator[Picture]:
     """Yield the frames of some steps of a trial, in order.
 
     Args:
         replay: the trial.
         numbers: of the steps, counting from 1.
+        every: only each so-manieth frame is drawn, counted from the last one; and the first.
     """
     film = Film(replay.workspace, replay.opening.goal)
     path: list[Point] = []
     wanted = set(numbers)
+    left = all_frames = sum(len(replay.steps[number - 1].scenes) for number in wanted)
     for one in replay.steps:
-        record = one.step.record
-        verdict = "replicated" if record.replicated else "not replicated"
-        if record.died:
-            verdict += ", row excluded"
-        if one.step.lost:
-            verdict += " (truly lost)"
-        for number, scene in enumerate(one.scenes):
-            path.append(scene.attractor.point)
-            if record.number in wanted:
-                last = number + 1 == len(one.scenes)
-                what = "position wrist" if number < one.placed else str(record.row.exploratory)
-                line = f"row {one.considered[0].id}: {verdict if last else what}"
-                yield film.picture(scene, path, step_title(replay, record.number), line)
+        number = one.step.record.number
+        for frame, scene in enumerate(one.scenes):
+            place = scene.attractor.point
+            if path[-1:] != [place]:
+                path.append(place)
+            if number not in wanted:
+                continue
+            left -= 1
+            if left % every == 0 or left + 1 == all_frames:
+                line = _line(one, frame)
+                yield film.picture(scene, path, step_title(replay, number), line)
+
+
+def _line(one: ReplayedStep, frame: int) -> str:
+    """Return in words what a frame of a step shows; the last one, what came of the step."""
+    record = one.step.record
+    what = "position wrist" if frame < one.placed else str(record.row.exploratory)
+    if frame + 1 == len(one.scenes):
+        what = "replicated" if record.replicated else "not replicated"
+        what += ", row excluded" if record.died else ""
+        what += " (truly lost)" if one.step.lost else ""
+    return f"row {one.considered[0].id}: {what}"
 
 
 def _color(color: Color) -> tuple[float, float, float]:
