@@ -54,12 +54,12 @@ def test_help_imports_nothing_heavy() -> None:
         *CAMERA,
         *PICTURES,
     }
-    for args in (
-        *(("--help",), ("--version",), ("learn", "--help")),
-        *(("camera", "view", "--help"), ("table", "export", "--help")),
-        *(("figure", "row", "--help"), ("figure", "trial", "--help"), ("report", "--help")),
+    for command in (
+        *((), ("learn",), ("replay",), ("report",), ("camera", "view"), ("table", "export")),
+        *(("figure", "row"), ("figure", "trial")),
     ):
-        assert not imported_by(*args) & heavy
+        assert not imported_by(*command, "--help") & heavy
+    assert not imported_by("--version") & heavy
 
 
 def test_sql_imports_neither_sqlalchemy_nor_physics(empty: Path) -> None:
@@ -101,6 +101,17 @@ def test_the_camera_s_libraries_load_only_to_look_through_it(empty: Path) -> Non
     assert not imported_by("report", "--db", empty) & CAMERA
     assert {"cv2", "scipy"} <= imported_by(*learn, "--sensor", "camera")
     assert "pymunk" not in imported_by("camera", "calibrate")
+
+
+def test_matplotlib_and_pillow_load_only_for_a_film(empty: Path, tmp_path: Path) -> None:
+    imported_by("learn", "--tool", "l-hook", "--behaviors", "200", "--db", empty)
+    imported_by("solve", "--goal", "3", "--db", empty)
+    for shown in (("1",), ("1", "--json"), ("--all",), ("--run", "1", "--steps", "1")):
+        assert not imported_by("replay", *shown, "--db", empty) & {*CAMERA, *PICTURES}
+    film = ("--steps", "1", "--gif", tmp_path / "film.gif")
+    modules = imported_by("replay", "1", *film, "--db", empty)
+    assert {"matplotlib", "PIL"} <= modules
+    assert not modules & {"matplotlib.pyplot", "cv2", "scipy"}
 
 
 def test_the_tests_libraries_stay_with_the_tests(empty: Path) -> None:

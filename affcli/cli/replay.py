@@ -21,6 +21,7 @@ from affcli.cli.terminal import (
     asked,
     columns,
     interactive,
+    on_terminal,
     play,
     progress,
     say,
@@ -31,17 +32,16 @@ from affcli.cli.terminal import (
 from affcli.errors import BadInputError, UsageError, one_line
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
     from affcli.core.replay import Difference, Replay, ReplayedBehavior
-    from affcli.report.replaying import Screen
+    from affcli.core.workspace import Workspace
+    from affcli.report.replaying import Page, Screen
     from affcli.store import Store
 
 STEPWISE = 4.0
 """Times the robot's own speed at which a step is shown before the next is asked for."""
 SLOWEST, FASTEST = 0.05, 100.0
-MOST_FRAMES = 4_500
-"""Of a GIF: five minutes of robot time, some 5 MB."""
+MOST_PICTURES = 4_500
+"""Of a GIF: five minutes of robot time at its own speed, some 2 MB."""
 MOST_SAID = 20
 """Trials that differ from their record; --json names all."""
 
@@ -77,20 +77,13 @@ def replay(
 
     On a terminal each step waits for Enter; --speed plays without waiting.
     """
-    if [trial is not None, run is not None, every].count(True) != 1:
-        raise UsageError("what? give one of TRIAL, --run ID and --all")
-    for option, number in (("TRIAL", trial), ("--run", run)):
-        if number is not None:
-            checked_count(option, number, LARGEST_ID)
+    _check_what(trial, run, every=every, shown=(steps, speed), gif=gif, as_json=as_json)
     wanted = _range(steps)
-    if speed is not None and not SLOWEST <= speed <= FASTEST:
-        raise BadInputError(f"--speed {speed}: must lie in {SLOWEST:g} to {FASTEST:g}")
-    if every and (steps is not None or speed is not None):
-        raise UsageError("--all shows no steps: leave out --steps and --speed")
     if gif is not None:
-        if trial is None:
-            raise UsageError("--gif is of one trial: give TRIAL")
+        from affcli.lab.drawing import require_figures
+
         require_new(gif, force=force, endings=(".gif",))
+        require_figures()
 
     from affcli.store import open_store
 
@@ -102,11 +95,37 @@ def replay(
         return _replay_trial(store, trial or 0, wanted, speed, gif, as_json=as_json)
 
 
+def _check_what(
+    trial: int | None,
+    run: int | None,
+    *,
+    every: bool,
+    shown: tuple[str | None, float | None],
+    gif: Path | None,
+    as_json: bool,
+) -> None:
+    """Refuse options that do not go together: nothing that is asked for is ignored."""
+    steps, speed = shown
+    if [trial is not None, run is not None, every].count(True) != 1:
+        raise UsageError("what? give one of TRIAL, --run ID and --all")
+    for option, number in (("TRIAL", trial), ("--run", run)):
+        if number is not None:
+            checked_count(option, number, LARGEST_ID)
+    if speed is not None and not SLOWEST <= speed <= FASTEST:
+        raise BadInputError(f"--speed {speed}: must lie in {SLOWEST:g} to {FASTEST:g}")
+    if every and (steps is not None or speed is not None):
+        raise UsageError("--all shows no steps: leave out --steps and --speed")
+    if gif is not None and trial is None:
+        raise UsageError("--gif is of one trial: give TRIAL")
+    if as_json and speed is not None and gif is None:
+        raise UsageError("--json plays nothing: leave out --speed")
+
+
 def _range(text: str | None) -> tuple[int, int] | None:
     """Return the first and the last number of ``3-5``."""
     if text is None:
         return None
-    found = re.fullmatch(r"(\d{1,7})(?:-(\d{1,7}))?", text)
+    found = re.fullmatch(r"([0-9]{1,9})(?:-([0-9]{1,9}))?", text)
     first, last = (int(found[1]), int(found[2] or found[1])) if found else (0, 0)
     if not 1 <= first <= last:
         raise BadInputError(f"--steps {one_line(text, 40)}: must be a number or two, as in 3-5")
@@ -123,78 +142,114 @@ def _replay_trial(
     as_json: bool,
 ) -> int:
     """Do one trial again; show it, film it, or give it as JSON."""
-    from affcli.lab.replaying import gif_of, replay_trial
-    from affcli.report.replaying import Screen, closing_words, replay_json
+    from affcli.lab.replaying import replay_trial
+    from affcli.report.replaying import closing_words, replay_json
 
     again = replay_trial(store, trial)
-    first, last = wanted or (1, max(1, len(again.steps)))
-    if wanted is not None and last > len(again.steps):
-        raise UsageError(f"no step {last} in trial {trial}; it has {len(again.steps)}")
-    numbers = range(first, min(last, len(again.steps)) + 1)
+    first, last = wanted or (1, len(again.steps))
+    if last > len(again.steps):
+        raise UsageError(f"no step {last} in trial {trial}; it has {len(again.steps) or 'none'}")
+    numbers = range(first, last + 1)
     if gif is not None:
-        frames = sum(len(again.steps[n - 1].scenes) for n in numbers)
-        if not 0 < frames <= MOST_FRAMES:
-            raise BadInputError(
-                f"a film of {frames} frames; give --steps A-B for 1 to {MOST_FRAMES} of them"
-            )
-        with progress("filming", frames) as bar:
-            save(gif, gif_of(again, numbers, speed or 1.0, lambda n: bar.update(n, f"{n} frames")))
-        say(f"trial {trial}, {len(numbers)} steps: {one_line(gif)}")
-    elif as_json:
-        show_json(replay_json(again))
-    else:
-        screen = Screen(again.workspace, columns(), braille=shows_braille())
-        _show_steps(again, numbers, speed, screen)
+        _film(again, numbers, speed or 1.0, gif)
+    if as_json:
+        show_json(replay_json(again, numbers))
+    elif gif is None:
+        _show_steps(again, numbers, speed)
     say(closing_words(again))
     return 1 if again.differences else 0
 
 
-def _show_steps(
-    replay: "Replay", numbers: Sequence[int], speed: float | None, screen: "Screen"
-) -> None:
-    """Show steps: played, one at a time, or, without a terminal, each as it ends."""
-    from affcli.lab.filming import FRAME_RATE
-    from affcli.report.replaying import trial_pages
+def _film(replay: "Replay", numbers: Sequence[int], speed: float, gif: Path) -> None:
+    """Write a film of some steps."""
+    from affcli.lab.replaying import film_length, gif_of
 
-    if not interactive():
-        show(*(list(trial_pages(replay, number, screen))[-1] for number in numbers))
-    elif speed is not None:
+    count = film_length(replay, numbers, speed)
+    if count == 0:
+        raise UsageError(f"trial {replay.trial_id} has no steps: there is nothing to film")
+    if count > MOST_PICTURES:
+        raise BadInputError(
+            f"a film of {count} pictures: at most {MOST_PICTURES}; give --steps A-B or more --speed"
+        )
+    with progress("filming", count) as bar:
+        film = gif_of(replay, numbers, speed, lambda n: bar.update(n, f"{n} pictures"))
+    save(gif, film)
+    which = f"step {numbers[0]}" if len(numbers) == 1 else f"steps {numbers[0]}-{numbers[-1]}"
+    say(f"trial {replay.trial_id}, {which}: {one_line(gif)}")
+
+
+def _screen(workspace: "Workspace") -> "Screen":
+    """Return what draws pages for this terminal."""
+    from affcli.report.replaying import Screen
+
+    return Screen(workspace, columns(), braille=shows_braille())
+
+
+def _show_steps(replay: "Replay", numbers: Sequence[int], speed: float | None) -> None:
+    """Show steps: played, one at a time, or, where nobody answers, each as it ends."""
+    from affcli.lab.filming import FRAME_RATE
+    from affcli.report.replaying import opening_page, trial_pages
+
+    screen = _screen(replay.workspace)
+    if not numbers:
+        show(opening_page(replay, screen))
+    elif speed is not None and on_terminal():
         pages = (page for number in numbers for page in trial_pages(replay, number, screen))
         play(pages, FRAME_RATE * speed)
-    else:
-        number: int | None = next(iter(numbers), None)
+    elif interactive():
+        number: int | None = numbers[0]
         while number is not None:
             play(trial_pages(replay, number, screen), FRAME_RATE * STEPWISE)
             number = _next(number, numbers)
+    else:
+        show(*(_last(trial_pages(replay, number, screen)) for number in numbers))
+
+
+def _last(pages: "Iterator[Page]") -> "Page":
+    """Return the last page."""
+    *_, last = pages
+    return last
 
 
 def _next(number: int, numbers: Sequence[int]) -> int | None:
     """Ask which step comes next; None for none."""
+    if len(numbers) == 1:
+        return None
     following = number + 1 if number + 1 in numbers else None
+    enter = "the end" if following is None else f"step {following}"
     while True:
-        enter = "the end" if following is None else f"step {following}"
-        answer = asked(f"Enter: {enter}; {numbers[0]} to {numbers[-1]}: that step; q: leave > ")
+        answer = asked(f"Enter: {enter}; {numbers[0]}-{numbers[-1]}: that; q: leave > ")
         if answer is None or answer.lower() in {"q", "quit"}:
             return None
         if not answer:
             return following
-        if answer.isdecimal() and int(answer) in numbers:
+        if re.fullmatch("[0-9]{1,9}", answer) and int(answer) in numbers:
             return int(answer)
 
 
 class _Noted:
-    """Behaviors done again, and what differs in them."""
+    """Behaviors done again, and what differs in them.
 
-    def __init__(self, behaviors: "Iterator[ReplayedBehavior]") -> None:
-        self._behaviors = behaviors
+    Args:
+        behaviors: as they are done.
+        last: the number of the last one that should be.
+    """
+
+    def __init__(self, behaviors: "Iterator[ReplayedBehavior]", last: int) -> None:
+        self._behaviors, self._last = behaviors, last
         self.done = 0
         self.differences: list[Difference] = []
 
     def __iter__(self) -> "Iterator[ReplayedBehavior]":
+        from affcli.core.replay import Difference
+
         for behavior in self._behaviors:
             self.done = behavior.record.step
             self.differences += behavior.differences
             yield behavior
+        if self.done < self._last:
+            missing = self.done + 1
+            self.differences.append(Difference(missing, "number", missing, None))
 
 
 def _replay_run(
@@ -208,43 +263,44 @@ def _replay_run(
     """Do a learning run again; show its behaviors on a terminal, or those that were asked for."""
     from affcli.config import settings_from_json
     from affcli.lab.replaying import replay_run
-    from affcli.report.replaying import Screen, behavior_pages, differences_json, verdict
+    from affcli.report.replaying import behavior_pages, differences_json, verdict
 
     info = store.learning_run(run)
     first, last = wanted or (1, info.behaviors)
     if last > info.behaviors:
-        raise UsageError(f"no behavior {last} in run {run}; it has {info.behaviors}")
-    noted = _Noted(replay_run(store, info, first, last))
-    if as_json or not (interactive() or wanted):
-        with progress(f"run {run}", last) as bar:
-            for behavior in noted:
-                bar.update(behavior.record.step, f"behavior {behavior.record.step}")
-    else:
-        workspace = settings_from_json(info.spec.settings).workspace
-        screen = Screen(workspace, columns(), braille=shows_braille())
+        raise UsageError(f"no behavior {last} in run {run}; it has {info.behaviors or 'none'}")
+    noted = _Noted(replay_run(store, info, first, last), last)
+    watched = wanted is not None or interactive() or (speed is not None and on_terminal())
+    if watched and not as_json and last:
+        screen = _screen(settings_from_json(info.spec.settings).workspace)
         name = f"Run {run}, {info.spec.tool}, {info.behaviors} behaviors"
         # Those before the first are only there when they differ from their record.
         seen = (behavior for behavior in noted if behavior.record.step >= first)
-        _show_behaviors((behavior_pages(name, behavior, screen) for behavior in seen), speed)
+        pages = (behavior_pages(name, behavior, screen) for behavior in seen)
+        _show_behaviors(pages, last - first + 1, speed)
+    else:
+        with progress(f"run {run}", last) as bar:
+            for behavior in noted:
+                bar.update(behavior.record.step, f"behavior {behavior.record.step}")
     if as_json:
         show_json({"run": run, "behaviors": noted.done, **differences_json(noted.differences)})
-    say(f"run {run}: {verdict(noted.done, noted.differences, 'behavior')}")
+    say(f"run {run}: {verdict(noted.done, noted.differences, 'behavior', info.behaviors)}")
     return 1 if noted.differences else 0
 
 
-def _show_behaviors(behaviors: "Iterator[Iterator[RenderableType]]", speed: float | None) -> None:
-    """Show behaviors: played, one at a time, or, without a terminal, each as it ends."""
+def _show_behaviors(behaviors: "Iterator[Iterator[Page]]", count: int, speed: float | None) -> None:
+    """Show behaviors: played, one at a time, or, where nobody answers, each as it ends."""
     from affcli.lab.filming import FRAME_RATE
 
-    if not interactive():
-        show(*(list(pages)[-1] for pages in behaviors))
-    elif speed is not None:
+    if speed is not None and on_terminal():
         play(chain.from_iterable(behaviors), FRAME_RATE * speed)
-    else:
-        for pages in behaviors:
+    elif interactive():
+        for number, pages in enumerate(behaviors, 1):
             play(pages, FRAME_RATE * STEPWISE)
-            if asked("Enter: the next; q: leave > ") != "":
+            if number < count and asked("Enter: the next; q: leave > ") != "":
                 return
+    else:
+        show(*map(_last, behaviors))
 
 
 def _replay_all(store: "Store", *, as_json: bool) -> int:
@@ -262,10 +318,12 @@ def _replay_all(store: "Store", *, as_json: bool) -> int:
             if again.differences:
                 differing[trial.id] = verdict(len(again.steps), again.differences)
             bar.update(number, f"{number} of {len(trials)} trials")
+    equal = len(trials) - len(differing)
     if as_json:
-        equal = len(trials) - len(differing)
         show_json({"trials": len(trials), "equal": equal, "differing": differing})
     for trial_id, words in list(differing.items())[:MOST_SAID]:
         say(f"trial {trial_id}: {words}")
-    say(f"{len(trials) - len(differing)} of {len(trials)} trials equal their record in every step")
+    if len(differing) > MOST_SAID:
+        say(f"and {len(differing) - MOST_SAID} more; --json names them all")
+    say(f"{equal} of {len(trials)} trials equal their record in every step")
     return 1 if differing else 0

@@ -5,6 +5,7 @@ import json
 import math
 import os
 import sys
+from collections import deque
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
@@ -26,7 +27,8 @@ NARROWEST = 20
 def prepare_streams() -> None:
     """Make sure that whatever the commands say can be written somewhere.
 
-    A closed stream (``>&-``) becomes one that forgets; what an encoding lacks is shown escaped.
+    A closed stream (``>&-``) becomes one that forgets; what an encoding lacks is shown escaped, and
+    what is no character in it is read so.
     """
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
@@ -35,6 +37,8 @@ def prepare_streams() -> None:
             setattr(sys, name, forgetful)
         elif isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
+    if isinstance(sys.stdin, io.TextIOWrapper):
+        sys.stdin.reconfigure(errors="backslashreplace")
 
 
 def now() -> str:
@@ -81,32 +85,53 @@ def show_json(value: Any) -> None:
 def play(pages: "Iterable[RenderableType]", pages_a_second: float) -> None:
     """Show pages one after the other in one place of the terminal; the last one stays.
 
-    Pages for which there is no time are left out, but for the last.
+    Pages for which there is no time are left out, but for the last. A terminal that cannot go back
+    (``TERM=dumb``) shows the last alone.
     """
     import time
 
     from rich.live import Live
 
-    with Live(console=_console(sys.stdout), auto_refresh=False) as live:
-        began = time.monotonic()
-        page: RenderableType = ""
-        for number, page in enumerate(pages):
-            early = began + number / pages_a_second - time.monotonic()
-            if early > 0.0:
-                live.update(page, refresh=True)
-                time.sleep(early)
-        live.update(page, refresh=True)
+    console = _console(sys.stdout)
+    if console.is_dumb_terminal:
+        show(*deque(pages, maxlen=1))
+        return
+    try:
+        with Live(console=console, auto_refresh=False) as live:
+            began = time.monotonic()
+            page: RenderableType = ""
+            for number, page in enumerate(pages, 1):
+                until = began + number / pages_a_second
+                if time.monotonic() < until:
+                    live.update(page, refresh=True)
+                    time.sleep(max(0.0, until - time.monotonic()))
+            live.update(page, refresh=True)
+    finally:
+        # A signal may fall between the hiding of the cursor and the block that shows it again.
+        console.show_cursor(True)
+
+
+def on_terminal() -> bool:
+    """Tell whether a person sees what is written to stdout."""
+    return sys.stdout.isatty()
 
 
 def interactive() -> bool:
-    """Tell whether a person sees what is written to stdout and can answer."""
-    return sys.stdout.isatty() and sys.stdin is not None and sys.stdin.isatty()
+    """Tell whether a person sees what is written and asked, and can answer."""
+    streams = (sys.stdin, sys.stdout, sys.stderr)
+    return all(stream is not None and stream.isatty() for stream in streams)
 
 
 def asked(question: str) -> str | None:
     """Ask on stderr; return the answer without blanks around it, None at the end of the input."""
     _write(sys.stderr, question)
-    answer = sys.stdin.readline()
+    answer = ""
+    try:
+        answer = sys.stdin.readline()
+    finally:
+        # After ctrl-D or ctrl-C the next words begin a line of their own.
+        if not answer.endswith("\n"):
+            _write(sys.stderr, "\n")
     return answer.strip() if answer else None
 
 
@@ -116,8 +141,12 @@ def columns() -> int:
 
 
 def shows_braille() -> bool:
-    """Tell whether stdout can be written in Unicode."""
-    return (sys.stdout.encoding or "").lower().replace("-", "").startswith("utf")
+    """Tell whether stdout can be written in Unicode, to a terminal that has braille letters.
+
+    The Linux console (``TERM=linux``) has a font of 512 letters without them.
+    """
+    unicode = (sys.stdout.encoding or "").lower().startswith("utf")
+    return unicode and not (on_terminal() and os.environ.get("TERM") == "linux")
 
 
 class Bar:

@@ -1,7 +1,9 @@
 """A replay on the terminal, one screen a moment; and as JSON types."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial, reduce
 from itertools import groupby
+from textwrap import fill
 from typing import Any
 
 from rich.console import Group, RenderableType
@@ -19,9 +21,21 @@ from affcli.report.trials import movement_in_words, step_lines
 
 WIDE, MAP_WIDTH, MAP_ROWS = 72, 42, 18
 """From so many columns on the words stand beside the map; the map's largest size in letters."""
+GAP = 2
+"""Columns between the map and the words."""
 MOST_CLOSE = 2
 """Rows shown of those that search 4 might have chosen instead."""
 MOST_DIFFERENCES = 5
+
+
+class Page:
+    """What is drawn only when it is shown: of a film that plays fast most pages never are."""
+
+    def __init__(self, draw: Callable[[], RenderableType]) -> None:
+        self._draw = draw
+
+    def __rich__(self) -> RenderableType:
+        return self._draw()
 
 
 class Screen:
@@ -38,10 +52,11 @@ class Screen:
         self._wide = columns >= WIDE
         self._view = View.of(workspace, min(columns - 1, MAP_WIDTH), MAP_ROWS)
         self._braille = braille
+        self._for_words = columns - (self._view.columns + GAP if self._wide else 0)
 
     def page(
-        self, title: str, phase: Text, scene: Scene, path: list[Point], words: Sequence[str]
-    ) -> RenderableType:
+        self, title: str, phase: Text, scene: Scene, path: Sequence[Point], words: Sequence[str]
+    ) -> Page:
         """Return a title, what is going on, the table, and what there is to say.
 
         Args:
@@ -51,16 +66,24 @@ class Screen:
             path: where the attractor has been.
             words: one paragraph each.
         """
-        drawn = table_map(scene, self._workspace, path, self._view, braille=self._braille)
-        text = Group(*(Text(line) for line in words))
-        body: RenderableType = Group(drawn, text)
-        if self._wide:
-            grid = Table.grid(padding=(0, 2, 0, 0), pad_edge=False)
-            grid.add_column(width=self._view.columns)
-            grid.add_column()
-            grid.add_row(drawn, text)
-            body = grid
-        return Group(Text(title, style="bold"), phase, body)
+
+        def draw() -> RenderableType:
+            drawn = table_map(scene, self._workspace, path, self._view, braille=self._braille)
+            # A paragraph's further lines are indented, so that it is seen where the next begins.
+            wrapped = partial(
+                fill, width=self._for_words, subsequent_indent="  ", break_on_hyphens=False
+            )
+            text = Text("\n".join(map(wrapped, words)))
+            body: RenderableType = Group(drawn, text)
+            if self._wide:
+                grid = Table.grid(padding=(0, GAP, 0, 0), pad_edge=False)
+                grid.add_column(width=self._view.columns)
+                grid.add_column()
+                grid.add_row(drawn, text)
+                body = grid
+            return Group(Text(title, style="bold"), phase, body)
+
+        return Page(draw)
 
 
 CHOOSING, PLACING, EXPLORING, COMPARING = range(4)
@@ -82,32 +105,30 @@ def phase_line(now: int, behavior: str) -> Text:
 
 def step_title(replay: Replay, number: int) -> str:
     """Return which trial, and which of its steps."""
-    return f"Trial {replay.trial_id}: {_which(replay.spec)}; step {number} of {len(replay.steps)}"
+    return f"Trial {replay.trial_id}, step {number} of {len(replay.steps)}: {_which(replay.spec)}"
 
 
 def _which(spec: TrialSpec) -> str:
     """Return in words which trial it is."""
-    truly = "" if spec.shape == spec.tool else f", truly {spec.shape}"
+    truly = "" if spec.shape == spec.tool else f" (truly {spec.shape})"
     return f"{spec.tool}{truly}, goal {spec.goal}, start {spec.start}"
 
 
-def step_words(replay: Replay, step: ReplayedStep) -> list[str]:
-    """Return why a row was chosen in a step, what came close, and what came of it."""
-    record = step.step.record
-    chosen = step.considered[0]
-    words = [f"row {chosen.id}: {record.row.exploratory}", ""]
-    words += step_lines(record, step.goal)
-    for other in step.considered[1 : 1 + MOST_CLOSE]:
-        words.append(
-            f"came close: row {other.id}, {other.row.exploratory}, wrist {other.repositioning:.1f} "
-            f"in away, should end {other.expected_distance:.1f} in from the goal's centre"
+def step_words(replay: Replay, step: ReplayedStep) -> tuple[list[str], list[str]]:
+    """Return why a row was chosen in a step and which were next best; and what came of it."""
+    chosen, *others = step.considered
+    *why, happened, probability = step_lines(step.step.record, step.goal)
+    why = [f"row {chosen.id}: {chosen.row.exploratory}", "", *why]
+    for other in others[:MOST_CLOSE]:
+        why.append(
+            f"next best: row {other.id}, {other.row.exploratory}, {other.repositioning:.1f} in; "
+            f"should end {other.expected_distance:.1f} in from there"
         )
-    if step.step.lost:
-        words.append(f"truly lost: the {replay.spec.shape} cannot do it")
-    return words
+    lost = [f"truly lost: the {replay.spec.shape} cannot do it"] if step.step.lost else []
+    return why, [happened, probability, *lost]
 
 
-def trial_pages(replay: Replay, number: int, screen: "Screen") -> Iterator[RenderableType]:
+def trial_pages(replay: Replay, number: int, screen: Screen) -> Iterator[Page]:
     """Yield one step of a trial, a page for each frame; the last one when it has been judged.
 
     Args:
@@ -117,19 +138,31 @@ def trial_pages(replay: Replay, number: int, screen: "Screen") -> Iterator[Rende
     """
     one = replay.steps[number - 1]
     behavior = str(one.step.record.row.exploratory)
-    title, words = step_title(replay, number), step_words(replay, one)
-    # One place for each frame so far: a path.
-    path = [s.attractor.point for done in replay.steps[: number - 1] for s in done.scenes]
+    title, (why, outcome) = step_title(replay, number), step_words(replay, one)
+    path: tuple[Point, ...] = ()
+    for done in replay.steps[: number - 1]:
+        path = reduce(_farther, done.scenes, path)
     for frame, scene in enumerate(one.scenes):
-        path.append(scene.attractor.point)
-        phase = PLACING if frame < one.placed else EXPLORING
-        yield screen.page(title, phase_line(phase, behavior), scene, path, words)
+        path = _farther(path, scene)
+        phase = CHOOSING if frame == 0 else PLACING if frame < one.placed else EXPLORING
+        yield screen.page(title, phase_line(phase, behavior), scene, path, why)
+    words = [*why, *outcome]
     yield screen.page(title, phase_line(COMPARING, behavior), one.scenes[-1], path, words)
 
 
-def behavior_pages(
-    run: str, behavior: ReplayedBehavior, screen: "Screen"
-) -> Iterator[RenderableType]:
+def opening_page(replay: Replay, screen: Screen) -> Page:
+    """Return the table of a trial that has no steps."""
+    title = f"Trial {replay.trial_id}, no steps: {_which(replay.spec)}"
+    return screen.page(title, Text(), replay.opening, (), ())
+
+
+def _farther(path: tuple[Point, ...], scene: Scene) -> tuple[Point, ...]:
+    """Return where the attractor has been, with where it is now if it has moved."""
+    place = scene.attractor.point
+    return path if path[-1:] == (place,) else (*path, place)
+
+
+def behavior_pages(run: str, behavior: ReplayedBehavior, screen: Screen) -> Iterator[Page]:
     """Yield one behavior of a learning run, a page for each frame.
 
     Args:
@@ -139,9 +172,9 @@ def behavior_pages(
     """
     title = f"{run}: behavior {behavior.record.step}"
     words = behavior_words(behavior)
-    path: list[Point] = []
+    path: tuple[Point, ...] = ()
     for scene in behavior.scenes:
-        path.append(scene.attractor.point)
+        path = _farther(path, scene)
         yield screen.page(title, Text(), scene, path, words)
 
 
@@ -152,16 +185,40 @@ def closing_words(replay: Replay) -> str:
     return f"trial {replay.trial_id} {ended}; {same}"
 
 
-def verdict(count: int, differences: Sequence[Difference], noun: str = "step") -> str:
-    """Return in words whether so many steps, done again, equal their record."""
+def verdict(
+    count: int, differences: Sequence[Difference], noun: str = "step", of: int | None = None
+) -> str:
+    """Return in words whether so many steps, done again, equal their record.
+
+    Args:
+        count: how many were done.
+        differences: what came out otherwise.
+        noun: what they are.
+        of: how many the record holds; None for `count`.
+    """
     if not differences:
-        return f"the replay equals the record in all {count} {noun}s"
+        which = "all" if of in {None, count} else "the first"
+        known = {0: f"no {noun}s", 1: f"{'its' if which == 'all' else which} one {noun}"}
+        return f"the replay equals the record, {known.get(count, f'{which} {count} {noun}s')}"
     shown = [
-        f"{f'{noun} {number}' if number else 'the end'} ({', '.join(d.column for d in some)})"
+        f"{f'{noun} {number}' if number else 'the end'} ({_at_most(map(_differing, some), 3)})"
         for number, some in groupby(differences, key=lambda d: d.number)
     ]
-    more = f" and {len(shown) - MOST_DIFFERENCES} more" if len(shown) > MOST_DIFFERENCES else ""
-    return f"the replay DIFFERS from the record in {', '.join(shown[:MOST_DIFFERENCES])}{more}"
+    return f"the replay DIFFERS from the record in {_at_most(shown, MOST_DIFFERENCES)}"
+
+
+def _differing(difference: Difference) -> str:
+    """Return in words what differs."""
+    if difference.column != "number":
+        return difference.column
+    return "not in the record" if difference.stored is None else "not done again"
+
+
+def _at_most(words: Iterable[str], most: int) -> str:
+    """Return so many of some words, and how many more there are."""
+    words = list(words)
+    more = f" and {len(words) - most} more" if len(words) > most else ""
+    return ", ".join(words[:most]) + more
 
 
 def behavior_words(behavior: ReplayedBehavior) -> list[str]:
@@ -181,8 +238,13 @@ def behavior_words(behavior: ReplayedBehavior) -> list[str]:
     ]
 
 
-def replay_json(replay: Replay) -> dict[str, Any]:
-    """Return a replay as JSON types: what each step weighed, did and saw, and the differences."""
+def replay_json(replay: Replay, numbers: Sequence[int]) -> dict[str, Any]:
+    """Return a replay as JSON types: what each step weighed, did and saw, and the differences.
+
+    Args:
+        replay: the trial.
+        numbers: of the steps that are wanted; the differences are those of all.
+    """
     spec = replay.spec
     goal = goal_regions(replay.workspace.layout)[spec.goal]
     return {
@@ -194,7 +256,7 @@ def replay_json(replay: Replay) -> dict[str, Any]:
         "start": spec.start,
         "goal_center": list(goal.center),
         "outcome": None if replay.end is None else replay.end.outcome.value,
-        "steps": [_step_json(one) for one in replay.steps],
+        "steps": [_step_json(replay.steps[number - 1]) for number in numbers],
         **differences_json(replay.differences),
     }
 

@@ -19,6 +19,9 @@ READING = {
     "table list": ("table", "list"),
     "table show": ("table", "show", "1"),
     "table export": ("table", "export"),
+    "replay": ("replay", "1"),
+    "replay --run": ("replay", "--run", "1"),
+    "replay --all": ("replay", "--all"),
 }
 WRITING_WHAT_IS_THERE = {
     "solve": ("solve", "--goal", "2"),

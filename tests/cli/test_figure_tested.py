@@ -250,7 +250,7 @@ def test_without_matplotlib_it_says_what_to_install(name: str, used: Path) -> No
     ended = without("matplotlib", "figure", *FIGURES[name], "--db", str(used), "--out", out)
     assert ended.code == 2
     assert ended.err == (
-        "affcli: figures need matplotlib; install it: pip install 'affcli[figures]'\n"
+        "affcli: figures need Matplotlib and Pillow; install them: pip install 'affcli[figures]'\n"
     )
 
 

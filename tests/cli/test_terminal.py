@@ -20,6 +20,8 @@ SHOWING = {
     "solve": ("solve", "--goal", "2"),
     "explain": ("solve", "--goal", "2", "--explain"),
     "break-tool": ("break-tool",),
+    "replay": ("replay", "5"),
+    "replay of a run": ("replay", "--run", "1", "--steps", "5-6"),
     "db info": ("db", "info"),
     "table list": ("table", "list"),
     "table show": ("table", "show", "1"),
@@ -53,6 +55,9 @@ def shell(command: str, database: Path) -> Ended:
         "affcli table export --db FILE | head -1",
         "affcli solve --goal 1 --explain --db FILE | head -1",
         "affcli learn --tool stick --behaviors 5 --db FILE 2>&1 | true",
+        "affcli replay 5 --db FILE 2>&- | head -1",
+        "affcli replay --run 1 --steps 1-9 --db FILE 2>&- | head -1",
+        "affcli replay 5 --json --db FILE 2>&1 | true",
     ],
 )
 def test_a_reader_who_has_seen_enough_is_no_failure(command: str, used: Path) -> None:
@@ -70,6 +75,7 @@ def test_trials_are_done_to_the_end_though_nobody_reads(learned: Path) -> None:
 def test_closed_streams_are_written_to_in_vain(used: Path) -> None:
     ended = shell("affcli report --db FILE >&-", used)
     assert (ended.code, ended.out, ended.err) == (0, "", "")
+    assert shell("affcli replay 5 --db FILE >&- 2>&- <&-", used) == Ended(0, "", "")
     ended = shell("affcli learn --tool stick --behaviors 5 --db FILE 2>&- >/dev/null", used)
     assert ended.code == 0
     assert shell("affcli report --db none.db 2>&-", used) == Ended(3, "", "")
@@ -78,7 +84,12 @@ def test_closed_streams_are_written_to_in_vain(used: Path) -> None:
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is full")
 def test_an_output_that_cannot_be_written_is_one_line(used: Path) -> None:
     says = "affcli: the output cannot be written: No space left on device; write it elsewhere\n"
-    for command in ("report --db FILE", "sql 'select 1' --json --db FILE", "--version"):
+    for command in (
+        "report --db FILE",
+        "sql 'select 1' --json --db FILE",
+        "replay 5 --db FILE",
+        "--version",
+    ):
         assert shell(f"affcli {command} > /dev/full", used) == Ended(1, "", says)
 
 

@@ -41,6 +41,9 @@ USAGE = {
     "unknown shape": (("break-tool", "--becomes", "l-hoo"), "did you mean l-hook"),
     "same shape": (("break-tool", "--becomes", "t-hook"), "another shape than it was"),
     "robots in words": (("reproduce", "--robots", "many"), "'--robots'"),
+    "nothing to replay": (("replay",), "what? give one of TRIAL, --run ID and --all"),
+    "trial in words": (("replay", "first"), "'TRIAL'"),
+    "unknown option of replay": (("replay", "1", "--step", "2"), "No such option: --step"),
 }
 
 BAD_NUMBERS = {
@@ -60,6 +63,11 @@ BAD_NUMBERS = {
     "absurd robots": ("reproduce", "--robots", "1" + "0" * 30),
     "workers 0": ("reproduce", "--workers", "0"),
     "absurd workers": ("reproduce", "--workers", "100000"),
+    "run 0": ("replay", "--run", "0"),
+    "absurd run": ("replay", "--run", "1" + "0" * 30),
+    "speed 0": ("replay", "1", "--speed", "0"),
+    "speed not a number": ("replay", "1", "--speed", "nan"),
+    "steps backwards": ("replay", "1", "--steps", "5-3"),
 }
 
 SEEDED = (
@@ -117,7 +125,8 @@ STRANGE = {
 
 @pytest.mark.parametrize("name", STRANGE.values(), ids=STRANGE.keys())
 def test_a_strange_name_is_one_printable_line(name: str | bytes, tmp_path: Path) -> None:
-    for args in (("learn", "--tool", name), ("solve", "--goal", "1", "--start", name)):
+    strange = (("learn", "--tool", name), ("solve", "--goal", "1", "--start", name))
+    for args in (*strange, ("replay", name), ("replay", "--run", name)):
         refused(2, *args, cwd=tmp_path)
     assert names_in(tmp_path) == []
 
@@ -142,7 +151,7 @@ def test_without_a_command_it_says_which_there_are(args: tuple[str, ...], tmp_pa
 
 
 def test_help_and_version_are_results(tmp_path: Path) -> None:
-    for args in (("--help",), ("learn", "--help"), ("db", "info", "--help")):
+    for args in (("--help",), ("learn", "--help"), ("replay", "--help"), ("db", "info", "--help")):
         ended = affcli(*args, cwd=tmp_path)
         assert (ended.code, ended.err) == (0, "")
         assert ended.out.startswith("Usage: ")

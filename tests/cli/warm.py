@@ -61,6 +61,7 @@ def become(request: dict[str, Any]) -> None:
         file = os.open(stream, os.O_RDWR | os.O_CREAT | os.O_TRUNC)
         os.dup2(file, number)
         os.close(file)
+    sys.stdin = io.TextIOWrapper(io.FileIO(0, closefd=False), encoding="utf-8")
     sys.stdout, sys.stderr = (
         io.TextIOWrapper(io.FileIO(number, "w", closefd=False), encoding="utf-8", errors=errors)
         for number, errors in ((1, "strict"), (2, "backslashreplace"))
