@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from affcli.config import differences, settings_from_json
+from affcli.core.replay import Replay
 from affcli.core.task import GOAL_NUMBERS, START_NUMBERS
 from affcli.core.tool import TOOL_PARTS
 from affcli.core.trial import Counters
@@ -51,18 +52,6 @@ def content_of(
     for number, trial in enumerate(life.trials, 1):
         replays.append(replay_trial(store, trial.id))
         done(number, len(life.trials))
-    broken = None
-    adapted = [r for r in replays if r.spec.shape != r.spec.tool]
-    if adapted:
-        spec, run = adapted[-1].spec, adapted[-1].run_id
-        settings = settings_from_json(store.learning_run(run).spec.settings)
-        broken = Broken(
-            tool_named(settings, spec.tool),
-            tool_named(settings, spec.shape),
-            missing_side(settings, spec.tool, spec.shape),
-            {row.id: row.row for row in store.affordances(run)},
-            [r for r in adapted if (r.spec.shape, r.run_id) == (spec.shape, run)],
-        )
     return Content(
         database=one_line(store.path.name),
         robot=life.name,
@@ -70,7 +59,7 @@ def content_of(
         tools=tools,
         replays=replays,
         left_out=life.left_out,
-        broken=broken,
+        broken=_broken(store, replays),
         versions=life.runs[-1].versions,
     )
 
@@ -148,6 +137,28 @@ def _latest(trials: Iterable[TrialInfo]) -> list[TrialInfo]:
     return sorted(by_kind.values(), key=place)
 
 
+def _broken(store: Store, replays: Iterable[Replay]) -> list[Broken]:
+    """Return each tool that became another shape, with the trials that tell what came of it."""
+    adapted: dict[tuple[int, str], list[Replay]] = {}
+    for replay in replays:
+        if replay.spec.shape != replay.spec.tool and replay.end is not None:
+            adapted.setdefault((replay.run_id, replay.spec.shape), []).append(replay)
+    found = []
+    for (run, shape), trials in adapted.items():
+        settings = settings_from_json(store.learning_run(run).spec.settings)
+        tool = trials[0].spec.tool
+        found.append(
+            Broken(
+                tool_named(settings, tool),
+                tool_named(settings, shape),
+                missing_side(settings, tool, shape),
+                {row.id: row.row for row in store.affordances(run)},
+                trials,
+            )
+        )
+    return found
+
+
 def _learned(store: Store, run: LearningRunInfo) -> LearnedRows:
     """Return what one learning run left."""
     settings = settings_from_json(run.spec.settings)
@@ -162,6 +173,5 @@ def _learned(store: Store, run: LearningRunInfo) -> LearnedRows:
         resets=run.resets,
         robot_seconds=run.robot_seconds,
         settings=differences(run.spec.settings),
-        workspace=settings.workspace,
         rows={row.id: row.row for row in store.affordances(run.id)},
     )

@@ -43,6 +43,8 @@ def reproduced(result: Reproduction) -> str:
 def solved_by_one(trials: Sequence[Replay]) -> str:
     """Return what one robot solved with whole tools."""
     ended = [t for t in trials if t.spec.protocol is Protocol.EXTENSION_OF_REACH and t.end]
+    if not ended:
+        return "One robot cannot tell, and this one has tried nothing yet: affcli solve --goal 1"
     solved = sum(t.end.outcome is Outcome.SOLVED for t in ended if t.end)
     return (
         f"One robot cannot tell. It solved {solved} of {len(ended)} trials with whole tools. For "
@@ -105,26 +107,27 @@ def unlearned(broken: Broken) -> Unlearned:
     missing = frozenset(
         n for n in gone if broken.rows[n].start.wrist_to_object_x * broken.missing_side > 0.0
     )
-    return Unlearned(gone, frozenset(lost), missing, Tally.of(_records(broken.trials)))
-
-
-def _records(trials: Sequence[Replay]) -> list[TrialRecord]:
-    """Return trials as records of those that ended."""
-    return [
+    records = [
         TrialRecord(t.spec, tuple(one.step for one in t.steps), t.end)
-        for t in trials
+        for t in broken.trials
         if t.end is not None
     ]
+    return Unlearned(gone, frozenset(lost), missing, Tally.of(records))
 
 
 def forgot(broken: Broken, result: Unlearned) -> str:
     """Return what the robot unlearned when its tool broke."""
     tally = result.tally
     sure = len(set(result.excluded) & result.lost)
+    side = (
+        f"with {len(result.missing)} of these the puck lay on the side that is gone, and "
+        if broken.missing_side
+        else "of these, "
+    )
     return (
         f"{len(result.excluded)} of its {len(broken.rows)} rows were excluded in at least one of "
-        f"{tally.trials} trials; with {len(result.missing)} of these the puck lay on the side that "
-        f"is gone, and {sure} are truly lost: the {broken.shape.name} cannot do them. "
+        f"{tally.trials} trials; {side}{sure} are truly lost: the {broken.shape.name} cannot do "
+        "them. "
         f"{tally.tries_on_lost} of {tally.tries} tries went to lost rows. Each trial began with "
         f"the table as learned; {tally.solved} of {tally.trials} were solved (paper: {BROKEN_TOOL} "
         "of 16)."

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from affcli.core.affordance import Affordance
 from affcli.core.replay import Replay
 from affcli.core.tool import Tool
-from affcli.core.workspace import Workspace
 from affcli.report.reproduction import Reproduction
 
 
@@ -21,7 +20,6 @@ class LearnedRows:
         behaviors, resets: how many were executed; how often the attractor was put back by hand.
         robot_seconds: how long it took.
         settings: how its settings differ from the defaults, in words.
-        workspace: where it took place.
         rows: the affordance table by the rows' numbers in the store.
     """
 
@@ -33,7 +31,6 @@ class LearnedRows:
     resets: int
     robot_seconds: float
     settings: str
-    workspace: Workspace
     rows: Mapping[int, Affordance]
 
 
@@ -45,7 +42,7 @@ class Broken:
         tool, shape: what was learned, and what is left of it.
         missing_side: x of the middle of what is missing, in the tool frame (in).
         rows: the affordance table as learned, by the rows' numbers in the store.
-        trials: with the broken tool.
+        trials: with the broken tool, all of which ended.
     """
 
     tool: Tool
@@ -66,7 +63,7 @@ class Content:
         tools: what the robot learned.
         replays: its trials, done again.
         left_out: older trials of the same robot that are not shown.
-        broken: None when its tool did not break.
+        broken: each tool of its that broke.
         versions: what the records were made with, by package.
     """
 
@@ -76,5 +73,5 @@ class Content:
     tools: Sequence[LearnedRows]
     replays: Sequence[Replay]
     left_out: int
-    broken: Broken | None
+    broken: Sequence[Broken]
     versions: Mapping[str, str]

@@ -3,14 +3,20 @@
 from collections.abc import Iterable
 from typing import Any
 
+from affcli.core.observation import Movement
 from affcli.core.replay import Considered, Replay, ReplayedStep
-from affcli.core.tool import Tool
-from affcli.report.trials import distances
+from affcli.core.tool import Tool, paper_tools
+from affcli.core.workspace import Workspace
+from affcli.report.trials import distances, movement_in_words
 
 UNIT = 0.02
 """Inches, or radians, from one whole number to the next: less than a pixel on the page."""
+AROUND = 2.0
+"""Inches shown around the table: a puck that leaves it is still seen."""
 ROUNDED = 2
-"""Decimals of lengths that are shown (in)."""
+"""Decimals of lengths that are drawn (in)."""
+UNSEEN = 0.05
+"""Inches below which a movement would be shown as 0.0: the noise of a puck that stays."""
 
 
 def packed(values: Iterable[float]) -> str:
@@ -36,12 +42,18 @@ def _zeros(count: int) -> list[str]:
     return [f"~{count}"] if count > 1 else ["0"] * count
 
 
-def trial_data(replay: Replay) -> dict[str, Any]:
-    """Return a trial as JSON types: which it is, its film, and why each step was taken."""
+def trial_data(replay: Replay, world: int) -> dict[str, Any]:
+    """Return a trial as JSON types: which it is, its film, and why each step was taken.
+
+    Args:
+        replay: the trial.
+        world: in which of the page's worlds it took place.
+    """
     scenes = [scene for one in replay.steps for scene in one.scenes] or [replay.opening]
     spec, goal, end = replay.spec, replay.opening.goal, replay.end
     return {
         "id": replay.trial_id,
+        "world": world,
         "tool": spec.tool,
         "shape": spec.shape,
         "goal": spec.goal,
@@ -65,17 +77,16 @@ def trial_data(replay: Replay) -> dict[str, Any]:
 def _step(one: ReplayedStep) -> dict[str, Any]:
     """Return one step as JSON types."""
     record = one.step.record
-    now, then, _ = distances(record, one.goal)
+    now, _, _ = distances(record, one.goal)
     return {
         "frames": len(one.scenes),
         "placed": one.placed,
         "left": list(record.survivors),
         "close": [_considered(each) for each in one.considered],
         "at": _rounded(record.start.object_x, record.start.object_y),
-        "toGoal": round(now, ROUNDED),
-        "expectedToGoal": round(then, ROUNDED),
-        "expected": _rounded(record.expected.dx, record.expected.dy),
-        "seen": _rounded(record.seen.dx, record.seen.dy),
+        "toGoal": f"{now:.1f}",
+        "expected": _moved(record.expected),
+        "seen": _moved(record.seen),
         "replicated": record.replicated,
         "blocked": record.execution is None,
         "died": record.died,
@@ -86,21 +97,44 @@ def _step(one: ReplayedStep) -> dict[str, Any]:
 
 
 def _considered(each: Considered) -> list[Any]:
-    """Return a row that came close: number, behavior, two distances (in), two counters."""
+    """Return a row that came close: number, behavior, two distances (in), probability."""
     row = each.row
     return [
         each.id,
         str(row.exploratory),
-        *_rounded(each.expected_distance, each.repositioning),
-        row.times_successful,
-        row.times_used,
+        f"{each.expected_distance:.1f}",
+        f"{each.repositioning:.1f}",
+        f"{row.times_successful}/{row.times_used}",
     ]
 
 
-def tool_data(tool: Tool, color: tuple[float, float, float]) -> dict[str, Any]:
+def _moved(movement: Movement) -> list[Any]:
+    """Return a movement along x and y (in) and in words, as the terminal has them."""
+    words = movement_in_words(movement) if movement.distance >= UNSEEN else "none"
+    return [*_rounded(movement.dx, movement.dy), words]
+
+
+def world_data(workspace: Workspace) -> dict[str, Any]:
+    """Return the table, the puck and the tools as JSON types (in)."""
+    table = workspace.table
+    half, near = table.half_width + AROUND, min(table.near, 4.0) - 1.0
+    return {
+        "puck": workspace.puck.radius,
+        "table": {
+            "left": -table.half_width,
+            "right": table.half_width,
+            "near": table.near,
+            "far": table.far,
+        },
+        "view": [-half, near, 2.0 * half, table.far + AROUND - near],
+        "tools": {name: _tool(tool) for name, tool in paper_tools(workspace.tools).items()},
+    }
+
+
+def _tool(tool: Tool) -> dict[str, Any]:
     """Return a tool's parts (in, tool frame) and colour as JSON types."""
     return {
-        "color": hex_color(color),
+        "color": hex_color(tool.color),
         "parts": {part.name: [list(v) for v in part.outline.vertices] for part in tool.parts},
     }
 

@@ -4,8 +4,9 @@
   const byId = (id) => document.getElementById(id);
   const RATE = 15; // frames a robot second
   const SEARCHES = ["observe", "over", "reach", "s1", "s2", "s3", "s4"];
-  const LIT = 140; // milliseconds that each box is lit for while a row is chosen
+  const LIT = 140; // milliseconds that each box is lit for while a row is chosen, at 4x
   const COMPARED = 500; // and the last one, at the end of a step
+  const END = { solved: "over", "attractor out of reach": "reach", "no row left": "s4" }; // the box where a trial ends
   const SVG = "http://www.w3.org/2000/svg";
 
   /** Undo report/page/films.packed. */
@@ -32,21 +33,18 @@
     if (kind) node.className = kind;
     return node;
   };
-  const inches = (value) => `${value.toFixed(1)} in`;
-  const degrees = (dx, dy) => `${(Math.round((Math.atan2(dy, dx) * 180) / Math.PI) + 360) % 360} deg`;
-  const movement = ([dx, dy]) => {
-    const length = Math.hypot(dx, dy);
-    return length < 0.05 ? "none" : `${inches(length)} at ${degrees(dx, dy)}`;
-  };
+  const steps = (count) => `${count} step${count === 1 ? "" : "s"}`;
 
   const svg = byId("table");
-  let trial, film, starts, frame, timer, drawn;
+  let trial, world, film, way, starts, frame, timer, drawn;
 
   /** Choose a trial: unpack its film, draw what does not move, list its steps. */
   function choose(index) {
     stop();
     trial = data.trials[index];
+    world = data.worlds[trial.world];
     film = Object.fromEntries(Object.entries(trial.film).map(([k, v]) => [k, unpacked(v, data.unit)]));
+    way = film.x.map((x, i) => `${x.toFixed(2)},${film.y[i].toFixed(2)}`);
     starts = [];
     let at = 0;
     for (const step of trial.steps) {
@@ -59,7 +57,7 @@
     const same = trial.equal ? "" : " This replay DIFFERS from its record.";
     byId("which").textContent =
       `Trial ${trial.id}: ${trial.tool}${broken}, goal ${trial.goal}, start ${trial.start}: ` +
-      `${trial.outcome} after ${trial.steps.length} step${trial.steps.length === 1 ? "" : "s"}.${same}`;
+      `${trial.outcome} after ${steps(trial.steps.length)}.${same}`;
     byId("scrub").max = Math.max(0, film.x.length - 1);
     byId("player").hidden = false;
     for (const row of byId("list").tBodies[0].rows)
@@ -72,24 +70,25 @@
 
   function draw() {
     svg.replaceChildren();
-    const [left, bottom, width, height] = data.view;
+    const [left, bottom, width, height] = world.view;
     svg.setAttribute("viewBox", `${left} ${-bottom - height} ${width} ${height}`);
     const flip = make("g", { transform: "scale(1,-1)" }, svg);
-    const t = data.table;
+    const t = world.table;
     make("rect", { class: "top", x: t.left, y: t.near, width: t.right - t.left, height: t.far - t.near }, flip);
     if (trial.region) {
       const [x, y, half] = trial.region;
       make("rect", { class: "goal", x: x - half, y: y - half, width: 2 * half, height: 2 * half }, flip);
       make("text", { class: "label", x: x - half + 0.3, y: -(y + half) + 1.2 }, svg).textContent = `G${trial.goal}`;
     }
+    make("text", { class: "label", x: 0, y: -bottom - 0.5, "text-anchor": "middle" }, svg).textContent = "the robot stands here";
     const path = make("polyline", { class: "path" }, flip);
     const missing = make("g", {}, flip);
-    const believed = data.tools[trial.tool], held = data.tools[trial.shape];
+    const believed = world.tools[trial.tool], held = world.tools[trial.shape];
     const gone = Object.entries(believed.parts).filter(([name]) => !(name in held.parts));
     outlines(gone.map(([, points]) => points), missing, { class: "missing" });
     const puck = make("g", {}, flip);
-    make("circle", { class: "puck", r: data.puck }, puck);
-    make("line", { class: "mark", x2: data.puck }, puck);
+    make("circle", { class: "puck", r: world.puck }, puck);
+    make("line", { class: "mark", x2: world.puck }, puck);
     const tool = make("g", {}, flip);
     // The tool has the colour of the one the robot believes to hold.
     const parts = outlines(Object.values(held.parts), tool, { class: "held", fill: believed.color });
@@ -137,19 +136,18 @@
     drawn.tool.setAttribute("transform", `translate(${wx} ${wy})`);
     drawn.missing.setAttribute("transform", `translate(${wx} ${wy})`);
     for (const part of drawn.parts) part.classList.toggle("lifted", film.lift[frame] > 0.01);
-    const path = [];
-    for (let i = 0; i <= frame; i++) path.push(`${film.x[i].toFixed(2)},${film.y[i].toFixed(2)}`);
-    drawn.path.setAttribute("points", path.join(" "));
+    drawn.path.setAttribute("points", way.slice(0, frame + 1).join(" "));
     byId("scrub").value = frame;
     if (!trial.steps.length) {
       byId("why").replaceChildren(html("h3", "No step was taken"), ending());
-      lit(["over", "reach", "s4"]);
+      delete byId("why").dataset.step;
+      lit(END[trial.outcome] ? [END[trial.outcome]] : []);
       now("the beginning");
       return;
     }
     const i = stepAt(frame), step = trial.steps[i], inStep = frame - starts[i];
     const first = inStep === 0, ended = inStep === step.frames - 1;
-    const arrow = (node, [dx, dy], on) => node.setAttribute("d", on && Math.hypot(dx, dy) > 0.05 ? `M${step.at[0]} ${step.at[1]}l${dx} ${dy}` : "");
+    const arrow = (node, [dx, dy, words], on) => node.setAttribute("d", on && words !== "none" ? `M${step.at[0]} ${step.at[1]}l${dx} ${dy}` : "");
     arrow(drawn.expected, step.expected, true);
     arrow(drawn.seen, step.seen, ended);
     let phase = inStep < step.placed ? "position wrist" : step.close[0][1];
@@ -157,7 +155,7 @@
     if (first) { boxes = SEARCHES; phase = "choose a row"; }
     if (ended) { boxes = ["compare"]; phase = "compare"; }
     if (ended && i === trial.steps.length - 1) {
-      const box = { solved: "over", "attractor out of reach": "reach", "no row left": "s4" }[trial.outcome];
+      const box = END[trial.outcome];
       boxes = box ? ["compare", box] : ["compare"];
       phase = `the end: ${trial.outcome}`;
     }
@@ -165,7 +163,12 @@
     now(`step ${i + 1} of ${trial.steps.length}, ${phase}`);
     if (byId("why").dataset.step !== `${trial.id}/${i}`) why(i);
     [...byId("steps").querySelectorAll("button")].forEach((button, k) => {
-      if (k === i) button.setAttribute("aria-current", "step"); else button.removeAttribute("aria-current");
+      if (k !== i) return button.removeAttribute("aria-current");
+      if (button.hasAttribute("aria-current")) return;
+      button.setAttribute("aria-current", "step");
+      // The list alone is scrolled, never the page.
+      const list = byId("steps"), top = button.offsetTop - list.offsetTop;
+      if (top < list.scrollTop || top + button.offsetHeight > list.scrollTop + list.clientHeight) list.scrollTop = top - list.clientHeight / 3;
     });
   }
 
@@ -205,17 +208,20 @@
       top.append(head);
     }
     const body = others.createTBody();
-    step.close.forEach(([row, call, end, repositioning, good, used], k) => {
+    step.close.forEach(([row, call, end, repositioning, probability], k) => {
       const line = body.insertRow();
-      const head = html("th", `${row}${k ? "" : " (chosen)"}`);
+      const head = html("th"), link = html("a", String(row));
+      link.href = `#row-${row}`;
+      link.title = "Show it over the tool";
+      head.append(link, k ? "" : " (chosen)");
       head.scope = "row";
       line.append(head);
-      for (const text of [call, inches(repositioning), inches(end), `${good}/${used}`]) line.append(html("td", text));
+      for (const text of [call, `${repositioning} in`, `${end} in`, probability]) line.append(html("td", text));
     });
-    const lead = html("p", `Row ${id}, ${behavior}: of the ${step.left[3]} row${step.left[3] === 1 ? "" : "s"} that should leave the puck nearest the goal it needs the least re-positioning, ${inches(travel)}. The puck is ${inches(step.toGoal)} from the goal's centre and should end ${inches(ends)} from it.`, "answer");
+    const lead = html("p", `Row ${id}, ${behavior}: of the ${step.left[3]} row${step.left[3] === 1 ? "" : "s"} that should leave the puck nearest the goal it needs the least re-positioning, ${travel} in. The puck is ${step.toGoal} in from the goal's centre and should end ${ends} in from it.`, "answer");
     const outcome = html("p");
     const word = step.blocked ? "blocked: the tool would have come down on the puck, counted as a failure" : step.replicated ? "as expected (within 40 degrees)" : "not as expected";
-    outcome.append(`Expected ${movement(step.expected)}, seen ${movement(step.seen)}: `, html("span", word, step.replicated ? "yes" : "no"),
+    outcome.append(`Expected ${step.expected[2]}, seen ${step.seen[2]}: `, html("span", word, step.replicated ? "yes" : "no"),
       `. Successes/uses ${step.before.join("/")} before, ${step.after.join("/")} after${step.died ? ": excluded from now on" : ""}.` +
       (step.lost ? ` In truth the ${trial.shape} cannot do it.` : ""));
     const scroll = html("div", "", "scroll");
@@ -225,6 +231,7 @@
     scroll.append(others);
     box.replaceChildren(html("h3", `Step ${i + 1}: why this row?`), lead, funnel, scroll, outcome);
     if (i === trial.steps.length - 1) box.append(ending());
+    if (timer === undefined) byId("said").textContent = `Step ${i + 1}: row ${id}, ${behavior}, ${word}`;
   }
 
   function stop() {
@@ -241,20 +248,21 @@
     let last = performance.now(), due = 0, searching = frame === starts[stepAt(frame)] ? last : 0, until = 0;
     const tick = (time) => {
       timer = requestAnimationFrame(tick);
+      const speed = Number(byId("speed").value), slower = Math.min(2, 4 / speed);
       if (searching) {
-        const box = Math.max(0, Math.floor((time - searching) / LIT));
+        const box = Math.max(0, Math.floor((time - searching) / (LIT * slower)));
         if (box < SEARCHES.length) { lit([SEARCHES[box]]); last = time; return; }
         searching = 0;
       }
       if (time < until) { last = time; return; }
-      due += ((time - last) / 1000) * RATE * Number(byId("speed").value);
+      due += ((time - last) / 1000) * RATE * speed;
       last = time;
       for (; due >= 1; due--) {
         if (frame >= film.x.length - 1) return stop();
         show(frame + 1);
         const i = stepAt(frame);
         if (frame === starts[i]) { searching = time; due = 0; return; }
-        if (frame === starts[i] + trial.steps[i].frames - 1) { until = time + COMPARED; due = 0; return; }
+        if (frame === starts[i] + trial.steps[i].frames - 1) { until = time + COMPARED * slower; due = 0; return; }
       }
     };
     timer = requestAnimationFrame(tick);
@@ -292,5 +300,12 @@
       byId("player").scrollIntoView({ block: "start" });
       byId("player").focus({ preventScroll: true });
     });
+  // A row's number leads to its arrow, in a tool that may be folded up.
+  byId("why").addEventListener("click", (event) => {
+    const arrow = event.target.hash && document.querySelector(event.target.hash);
+    if (!arrow) return;
+    stop();
+    arrow.closest("details").open = true;
+  });
   choose(data.first);
 })();

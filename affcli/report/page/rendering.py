@@ -11,7 +11,6 @@ from markupsafe import Markup
 from affcli import __version__
 from affcli.core.replay import Replay
 from affcli.core.task import GOAL_NUMBERS
-from affcli.core.tool import TOOL_COLORS
 from affcli.core.trial import Outcome, Protocol
 from affcli.report.learning import clock
 from affcli.report.page import answers, drawings, films
@@ -21,6 +20,13 @@ from affcli.report.reproduction import ENOUGH_ROBOTS, reproduction_json
 
 HOME = "affcli.report.page"
 """Where template, style sheet and scripts lie."""
+KINDS = {
+    Outcome.NO_ROW.value: "every row was excluded, or asks for a place out of the arm's reach",
+    Outcome.ATTRACTOR_OUT_OF_REACH.value: "the puck was pushed where the tool cannot reach it",
+    Outcome.STEP_LIMIT.value: "still trying when its steps ran out; the paper names no limit",
+    Outcome.INVALID.value: "the simulation failed; the trial counts for nothing",
+}
+"""How trials fail."""
 FEW = 3
 """Tries in vain that show what adaptation is."""
 
@@ -52,8 +58,10 @@ def render(content: Content, command: str) -> str:
         trim_blocks=False,
         keep_trailing_newline=True,
     )
+    pages.filters["capitalize_first"] = lambda text: text[:1].upper() + text[1:]
     sources = {name: _source(pages, name) for name in ("style.css", "tables.js", "player.js")}
-    trials = [films.trial_data(replay) for replay in content.replays]
+    worlds = list(dict.fromkeys(replay.workspace for replay in content.replays))
+    trials = [films.trial_data(r, worlds.index(r.workspace)) for r in content.replays]
     template = pages.get_template("page.html.j2")
     return template.render(
         content=content,
@@ -66,8 +74,14 @@ def render(content: Content, command: str) -> str:
         tools=[_tool_section(tool) for tool in content.tools],
         trials=trials,
         same=answers.same(content),
-        data=_data(content, trials),
-        broken=None if content.broken is None else _broken_section(content.broken),
+        data={
+            "unit": films.UNIT,
+            "worlds": [films.world_data(workspace) for workspace in worlds],
+            "trials": trials,
+            "first": _worth_seeing(trials),
+        },
+        broken=[_broken_section(broken) for broken in content.broken],
+        kinds=KINDS,
         **_results(content),
     )
 
@@ -156,35 +170,12 @@ def _broken_section(broken: Broken) -> dict[str, Any]:
     return {
         "answer": answers.forgot(broken, result),
         "tool": broken.tool,
+        "shape": broken.shape,
+        "side": bool(broken.missing_side),
         "panels": drawn,
         "frame": drawings.frame([broken.tool], drawn),
         "missing": broken.tool.parts_missing_in(broken.shape),
         "table": [(name, *counts) for name, counts in sorted(table.items())],
-    }
-
-
-def _data(content: Content, trials: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return what the script reads: the table, the tools and the trials."""
-    workspace = content.tools[0].workspace
-    table = workspace.table
-    half, near = table.half_width + 1.0, min(table.near, 4.0) - 1.0
-    shapes = {opening.tool.name: opening.tool for opening in (r.opening for r in content.replays)}
-    shapes |= {learned.tool.name: learned.tool for learned in content.tools}
-    return {
-        "unit": films.UNIT,
-        "puck": workspace.puck.radius,
-        "table": {
-            "left": -table.half_width,
-            "right": table.half_width,
-            "near": table.near,
-            "far": table.far,
-        },
-        "view": [-half, near, 2.0 * half, table.far + 1.0 - near],
-        "tools": {
-            name: films.tool_data(shape, TOOL_COLORS[shape.name]) for name, shape in shapes.items()
-        },
-        "trials": trials,
-        "first": _worth_seeing(trials),
     }
 
 

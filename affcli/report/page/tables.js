@@ -26,7 +26,14 @@
       for (const arrow of document.querySelectorAll("#tools .arrow"))
         arrow.classList.toggle("dim", radio.value !== "all" && !arrow.classList.contains(radio.value));
     });
+  /** Paper has nothing to unfold; what was closed is closed again afterwards. */
+  let unfolded = [];
   addEventListener("beforeprint", () => {
-    for (const closed of document.querySelectorAll("details:not([open])")) closed.open = true;
+    unfolded = [...document.querySelectorAll("details:not([open])")];
+    for (const closed of unfolded) closed.open = true;
+  });
+  addEventListener("afterprint", () => {
+    for (const opened of unfolded) opened.open = false;
+    unfolded = [];
   });
 })();
