@@ -5,25 +5,29 @@ ROBOTS = 200
 SEED = 1000
 WORKERS =
 
+# What the browser tests drive, by the names that systems give it; the same as in tests/browser.
+BROWSERS = chromium chromium-browser google-chrome
+
 VENV := .venv
 AFFCLI := $(VENV)/bin/affcli
 PIP := $(VENV)/bin/python -m pip --disable-pip-version-check
 
-# Stamps: the environment itself, affcli in it, and the tools of check and test in it.
+# Stamps: the environment itself, affcli in it, the tools of check and test, those of test-browser.
 MADE := $(VENV)/.made
 INSTALLED := $(VENV)/.installed
 INSTALLED_DEV := $(VENV)/.installed-dev
+INSTALLED_BROWSER := $(VENV)/.installed-browser
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help demo test check reproduce bench clean FORCE
+.PHONY: help demo test test-browser check reproduce bench clean FORCE
 
-## help       list these targets
+## help          list these targets
 help:
 	@sed -n 's/^## /make /p' $(firstword $(MAKEFILE_LIST))
 
-## demo       learn a tool, use it, break it and report, in a fresh demo.db
+## demo          learn a tool, use it, break it and report, in a fresh demo.db
 demo: $(INSTALLED)
 	@rm -f demo.db demo.db-wal demo.db-shm demo.db-journal
 	AFFCLI_DB=demo.db $(AFFCLI) learn --tool t-hook
@@ -33,26 +37,38 @@ demo: $(INSTALLED)
 	@printf '\nThe database: %s\nA query to try:\n  %s\n' '$(CURDIR)/demo.db' \
 	  '$(AFFCLI) sql --db demo.db "select exploratory_behavior, exploratory_params, round(movement, 1) as inches, round(direction) as degrees, times_successful, times_used from affordance_table order by times_used desc limit 5"'
 
-## test       run the tests
+## test          run the tests
 test: $(INSTALLED_DEV)
 	$(VENV)/bin/pytest
 
-## check      lint, formatting, types and import contracts
+## test-browser  test the page in a real browser; installs what it needs
+test-browser: $(INSTALLED_BROWSER)
+	@for name in $(BROWSERS); do command -v $$name >/dev/null && exit; done; \
+	if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+	  export DEBIAN_FRONTEND=noninteractive; \
+	  apt-get install -y -qq chromium >/dev/null 2>&1 || \
+	    { apt-get update -qq && apt-get install -y -qq chromium >/dev/null; }; \
+	else \
+	  echo 'no browser here: install chromium, chromium-browser or google-chrome (Debian: apt install chromium)' >&2; exit 1; \
+	fi
+	$(VENV)/bin/pytest tests/browser --browser
+
+## check         lint, formatting, types and import contracts
 check: $(INSTALLED_DEV)
 	$(VENV)/bin/ruff check
 	$(VENV)/bin/ruff format --check
 	$(VENV)/bin/mypy affcli tests
 	$(VENV)/bin/lint-imports
 
-## reproduce  the whole paper on many robots, in reproduce.db [ROBOTS=200 SEED=1000 WORKERS=n]
+## reproduce     the whole paper on many robots, in reproduce.db [ROBOTS=200 SEED=1000 WORKERS=n]
 reproduce: $(INSTALLED)
 	$(AFFCLI) reproduce --robots $(ROBOTS) --seed $(SEED) $(if $(WORKERS),--workers $(WORKERS)) --db reproduce.db
 
-## bench      measure the speed
+## bench         measure the speed
 bench: $(INSTALLED)
 	$(VENV)/bin/python experiments/bench.py
 
-## clean      remove .venv, caches, build products and demo.db; every other database stays
+## clean         remove .venv, caches, build products and demo.db; every other database stays
 clean:
 	rm -rf $(VENV) build dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
 	rm -f demo.db demo.db-wal demo.db-shm demo.db-journal
@@ -86,3 +102,7 @@ $(INSTALLED): $(MADE) pyproject.toml requirements.lock
 $(INSTALLED_DEV): $(MADE) pyproject.toml requirements.lock
 	$(PIP) install -q -c requirements.lock -e '.[dev]'
 	@touch $(INSTALLED) $@
+
+$(INSTALLED_BROWSER): $(MADE) pyproject.toml requirements.lock
+	$(PIP) install -q -c requirements.lock -e '.[dev,browser]'
+	@touch $(INSTALLED) $(INSTALLED_DEV) $@

@@ -35,7 +35,7 @@
   };
   const steps = (count) => `${count} step${count === 1 ? "" : "s"}`;
 
-  const svg = byId("table");
+  const svg = byId("table"), rows = [...byId("list").tBodies[0].rows]; // as the trials are in the data
   let trial, world, film, way, starts, frame, timer, drawn;
 
   /** Choose a trial: unpack its film, draw what does not move, list its steps. */
@@ -60,8 +60,7 @@
       `${trial.outcome} after ${steps(trial.steps.length)}.${same}`;
     byId("scrub").max = Math.max(0, film.x.length - 1);
     byId("player").hidden = false;
-    for (const row of byId("list").tBodies[0].rows)
-      row.classList.toggle("chosen", row.querySelector("button").dataset.trial === String(index));
+    rows.forEach((row, i) => row.classList.toggle("chosen", i === index));
     show(0);
   }
 
@@ -294,12 +293,17 @@
     const act = keys[event.key];
     if (act) { event.preventDefault(); act(); }
   });
-  for (const button of document.querySelectorAll(".choose"))
+  rows.forEach((row, index) => {
+    const head = row.cells[0], button = html("button", "", "choose");
+    button.type = "button";
+    button.append(html("span", "Replay "), head.textContent);
     button.addEventListener("click", () => {
-      choose(Number(button.dataset.trial));
+      choose(index);
       byId("player").scrollIntoView({ block: "start" });
       byId("player").focus({ preventScroll: true });
     });
+    head.replaceChildren(button);
+  });
   // A row's number leads to its arrow, in a tool that may be folded up.
   byId("why").addEventListener("click", (event) => {
     const arrow = event.target.hash && document.querySelector(event.target.hash);

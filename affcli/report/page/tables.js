@@ -16,8 +16,10 @@
         const value = (row) => row.cells[column].dataset.sort ?? row.cells[column].textContent.trim();
         const rows = [...table.tBodies[0].rows];
         const numbers = rows.every((row) => !Number.isNaN(parseFloat(value(row))));
-        rows.sort((a, b) => numbers ? parseFloat(value(a)) - parseFloat(value(b)) : value(a).localeCompare(value(b), "en"));
-        table.tBodies[0].append(...(down ? rows.reverse() : rows));
+        const compared = (a, b) => numbers ? parseFloat(a) - parseFloat(b) : a.localeCompare(b, "en");
+        // Equal ones keep their order both ways, so that one can sort by a second column.
+        rows.sort((a, b) => (down ? -1 : 1) * compared(value(a), value(b)));
+        table.tBodies[0].append(...rows);
       });
     });
   }
