@@ -92,7 +92,8 @@ def _as_page(html: Path, robot: int | None, session: int | None, database: Path)
     words = ["affcli", "report", "--db", database.name, "--html", html.name]
     for option, number in (("--session", session), ("--robot", robot)):
         words += [] if number is None else [option, str(number)]
-    save(html, render(content, shlex.join(words)).encode("utf-8", "backslashreplace"))
+    command = one_line(shlex.join(words), 1000)
+    save(html, render(content, command).encode("utf-8", "backslashreplace"))
     differing = sum(bool(replay.differences) for replay in content.replays)
     say(f"{content.robot}, {len(content.replays)} trials to replay: {one_line(html)}")
     if differing:

@@ -2,10 +2,11 @@
 
 from collections import Counter
 
-from affcli.config import differences
+from affcli.config import differences, settings_from_json
 from affcli.core.task import GOAL_NUMBERS
 from affcli.core.tool import TOOL_PARTS
 from affcli.core.trial import Outcome, Protocol
+from affcli.lab.plausible import not_written
 from affcli.lab.reproduction import BROKEN_TOOL
 from affcli.report.overview import Breaking, Overview, ProtocolFigures
 from affcli.report.reproduction import Reproduction
@@ -23,6 +24,9 @@ def reproduction_of(store: Store, session: int, robots: int) -> Reproduction:
     cells = {(str(tool), goal): [0] * robots for tool in TOOL_PARTS for goal in GOAL_NUMBERS}
     broken = [0] * robots
     for count in store.success_counts(session):
+        known = (count.tool, count.goal) in cells and 0 <= count.robot < robots
+        if not known:
+            raise not_written(f"a trial of session {session}")
         if count.protocol is Protocol.EXTENSION_OF_REACH:
             cells[count.tool, count.goal][count.robot] += count.solved
         elif count.tool == BROKEN_TOOL:
@@ -30,7 +34,7 @@ def reproduction_of(store: Store, session: int, robots: int) -> Reproduction:
     failures, trials = _failures(store, [session])
     lost = sum(use.tries for use in store.row_uses(session) if use.lost)
     (info,) = (s for s in store.sessions("reproduce") if s.id == session)
-    words = differences(info.settings)
+    words = differences(settings_from_json(info.settings).to_json())
     return Reproduction(robots, cells, broken, failures, trials, lost, session, info.seed, words)
 
 

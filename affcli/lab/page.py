@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 from affcli.config import differences, settings_from_json
 from affcli.core.replay import Replay
-from affcli.core.task import GOAL_NUMBERS, START_NUMBERS
 from affcli.core.tool import TOOL_PARTS
 from affcli.core.trial import Counters
-from affcli.errors import DatabaseError, UsageError, one_line
+from affcli.errors import UsageError, one_line
 from affcli.lab.bench import missing_side, tool_named
 from affcli.lab.overview import reproduction_of
+from affcli.lab.plausible import check_rows, check_trial, not_written
 from affcli.lab.replaying import replay_trial
 from affcli.report.page.content import Broken, Content, LearnedRows
 from affcli.report.reproduction import Reproduction
@@ -60,7 +60,9 @@ def content_of(
         replays=replays,
         left_out=life.left_out,
         broken=_broken(store, replays),
-        versions=life.runs[-1].versions,
+        versions={
+            one_line(name): one_line(version) for name, version in life.runs[-1].versions.items()
+        },
     )
 
 
@@ -69,7 +71,11 @@ def _reproduction(store: Store, session: int | None) -> Reproduction | None:
     found = _session(store, session)
     if found is None:
         return None
-    return reproduction_of(store, found.id, len(store.saved_robots(found.id)))
+    robots = store.saved_robots(found.id)
+    # They are saved in the order of their numbers.
+    if robots != set(range(len(robots))):
+        raise not_written(f"session {found.id}")
+    return reproduction_of(store, found.id, len(robots))
 
 
 def _session(store: Store, session: int | None) -> SessionInfo | None:
@@ -99,6 +105,12 @@ def _life(
         where = one_line(store.path)
         if robot is not None:
             raise UsageError(f"no robot {robot} in {where}: there is no reproduction in it")
+        begun = [str(run.id) for run in store.learning_runs(status="running")]
+        if begun:
+            raise UsageError(
+                f"nothing learned in {where} yet: run {', '.join(begun)} is not finished; go on "
+                "with the command that began it"
+            )
         raise UsageError(f"nothing learned in {where}; first run: affcli learn --tool t-hook")
     number = robot or 0
     runs = [r for r in store.learning_runs(session_id=result.session) if r.spec.robot == number]
@@ -126,12 +138,7 @@ def _latest(trials: Iterable[TrialInfo]) -> list[TrialInfo]:
 
     def place(trial: TrialInfo) -> tuple[int, ...]:
         spec = trial.spec
-        known = spec.tool in tools and spec.goal in GOAL_NUMBERS and spec.start in START_NUMBERS
-        if not known:
-            raise DatabaseError(
-                f"trial {trial.id} holds a value that affcli did not write; restore a copy of the "
-                "database"
-            )
+        check_trial(trial.id, spec)
         return (spec.shape != spec.tool, tools.index(spec.tool), spec.goal, spec.start)  # type: ignore[arg-type]
 
     return sorted(by_kind.values(), key=place)
@@ -163,7 +170,9 @@ def _learned(store: Store, run: LearningRunInfo) -> LearnedRows:
     """Return what one learning run left."""
     settings = settings_from_json(run.spec.settings)
     if run.spec.tool not in TOOL_PARTS:
-        raise DatabaseError(f"learning run {run.id} holds a tool that affcli does not know")
+        raise not_written(f"learning run {run.id}")
+    rows = {row.id: row.row for row in store.affordances(run.id)}
+    check_rows(run.id, settings, rows.values())
     return LearnedRows(
         run=run.id,
         tool=tool_named(settings, run.spec.tool),
@@ -173,5 +182,5 @@ def _learned(store: Store, run: LearningRunInfo) -> LearnedRows:
         resets=run.resets,
         robot_seconds=run.robot_seconds,
         settings=differences(run.spec.settings),
-        rows={row.id: row.row for row in store.affordances(run.id)},
+        rows=rows,
     )

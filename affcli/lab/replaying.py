@@ -1,26 +1,24 @@
 """Doing again what the database holds, scene by scene, held against the record (§6, §7)."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
 
-from affcli.behaviors.registry import paper_behaviors
-from affcli.config import LARGEST, Settings, settings_from_json
+from affcli.config import settings_from_json
 from affcli.core.affordance_table import AffordanceTable
-from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Observation
 from affcli.core.ports import Robot
 from affcli.core.replay import Considered, Replay, ReplayedBehavior, ReplayedStep
 from affcli.core.scene import Scene
-from affcli.core.task import GOAL_NUMBERS, START_NUMBERS, GoalRegion
+from affcli.core.task import GoalRegion
 from affcli.core.tool import TOOL_PARTS
 from affcli.core.trial import Counters, TrialStep
-from affcli.errors import DatabaseError
 from affcli.lab.filming import FRAME_RATE, Reel
 from affcli.lab.learning import LearningRun
+from affcli.lab.plausible import check_rows, check_starts, check_trial, not_written
 from affcli.lab.trials import Ended, LostAffordances, run_trial
 from affcli.planning.nested_query import Choice, candidates, choose_row
 from affcli.simulation.world import World
@@ -28,7 +26,6 @@ from affcli.store import LearningRunInfo, Store
 
 CLOSE = 5
 """Rows remembered of those that search 4 chose from, the chosen one among them."""
-REMEDY = "restore a copy of the database"
 
 
 class _Onlooker:
@@ -65,30 +62,21 @@ def replay_trial(store: Store, trial_id: int) -> Replay:
 
     Raises:
         UsageError: there is none of that number.
-        DatabaseError: it, or the table it began with, holds a value that affcli does not know.
+        DatabaseError: it, or the table it began with, holds what affcli does not write.
     """
     trial = store.trial(trial_id)
     settings = settings_from_json(trial.settings)
     spec = trial.spec
-    if not (
-        {spec.tool, spec.shape} <= set(TOOL_PARTS)
-        and spec.goal in GOAL_NUMBERS
-        and spec.start in START_NUMBERS
-        and min(spec.seed, spec.robot) >= 0
-    ):
-        raise DatabaseError(
-            f"trial {trial_id} holds a tool, goal, start or seed that affcli does not know; "
-            f"{REMEDY}"
-        )
+    check_trial(trial_id, spec)
     if spec.counters is Counters.STORED:
         table, ids = store.table_before(trial_id)
     else:
         table, ids = store.affordance_table(trial.run_id, as_learned=True)
-    _require_sound(table, settings, trial.run_id)
+    check_rows(trial.run_id, settings, table)
     lost = None
     if spec.shape != spec.tool:
         starts = store.row_starts(trial.run_id)
-        _require_starts(starts, table, trial.run_id)
+        check_starts(trial.run_id, starts, table)
         lost = LostAffordances(settings, spec.shape, starts)
     recorded = len(store.trial_steps(trial_id))
     world = World(settings.workspace, settings.physics)
@@ -111,36 +99,6 @@ def replay_trial(store: Store, trial_id: int) -> Replay:
         *(trial_id, trial.run_id, spec, settings.workspace),
         *(opening or world.scene, tuple(steps), end, differences),
     )
-
-
-def _require_sound(table: AffordanceTable, settings: Settings, run_id: int) -> None:
-    """Make sure that all rows can be executed; DatabaseError when one cannot."""
-    space = settings.workspace
-    known = set(paper_behaviors(space.arm, space.motion, space.tools).exploratory)
-    for row in table:
-        if row.exploratory not in known or not _sound(*row.start, *row.end):
-            raise DatabaseError(
-                f"row {row.step} of learning run {run_id} holds a behavior or a place that affcli "
-                f"does not know; {REMEDY}"
-            )
-
-
-def _require_starts(
-    starts: Mapping[int, tuple[Point, Pose]], table: AffordanceTable, run_id: int
-) -> None:
-    """Make sure that it is known where each row was made; DatabaseError when it is not."""
-    for row in table:
-        wrist, attractor = starts.get(row.step, (Point(math.nan, 0.0), Pose(0.0, 0.0)))
-        if not _sound(*wrist, *attractor):
-            raise DatabaseError(
-                f"behavior {row.step} of learning run {run_id} does not say where it began; "
-                f"{REMEDY}"
-            )
-
-
-def _sound(*values: float) -> bool:
-    """Tell whether all are numbers of this laboratory: no NaN, nothing far beyond it."""
-    return all(abs(value) <= LARGEST for value in values)
 
 
 def _replayed(step: TrialStep, onlooker: _Onlooker, scenes: tuple[Scene, ...]) -> ReplayedStep:
@@ -179,10 +137,7 @@ def replay_run(
     """
     spec = run.spec
     if spec.tool not in TOOL_PARTS or min(spec.seed, spec.robot, run.behaviors) < 0:
-        raise DatabaseError(
-            f"learning run {run.id} holds a tool, seed or number of behaviors that affcli does not "
-            f"know; {REMEDY}"
-        )
+        raise not_written(f"learning run {run.id}")
     learning = LearningRun(run.spec)
     reel = Reel()
     if first == 1:

@@ -65,7 +65,8 @@ class Comparing(Connected):
                 tries, good = used.get(row["id"], (0, 0))
                 counters = {"times_used": 1 + tries, "times_successful": 1 + good}
                 rows_then.append(affordance_from({**row, **counters}, as_learned=False))
-        return AffordanceTable(rows_then), {row["step"]: row["id"] for row in learned}
+            table = AffordanceTable(rows_then)
+        return table, {row["step"]: row["id"] for row in learned}
 
     def trial_differences(
         self,

@@ -74,6 +74,9 @@ def faults_named(path: Path, waited: float) -> Iterator[None]:
                 "a copy of the file"
             ) from error
         remedy = REMEDIES.get(code) or REMEDIES.get(code & PRIMARY)
+        # Python's own: SQLite itself does not look into text, and has no code for this.
+        if "Could not decode to UTF-8" in str(getattr(error, "orig", None) or error):
+            remedy = "holds text that is no text, which affcli did not write; restore a copy"
         if remedy is not None:
             raise DatabaseError(f"{one_line(path)}: {remedy}") from error
         raise

@@ -268,7 +268,7 @@ def info_from(row: sa.RowMapping) -> LearningRunInfo:
     with reading_what_was_written(f"learning run {row['id']}"):
         return LearningRunInfo(
             spec=learning_spec_from(row),
-            versions=json.loads(row["versions"]),
+            versions=dict(json.loads(row["versions"])),
             checkpoint=None if row["checkpoint"] is None else json.loads(row["checkpoint"]),
             **{
                 name: row[name]

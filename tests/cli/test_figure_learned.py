@@ -233,7 +233,9 @@ def test_without_matplotlib_it_says_what_to_install(command: tuple[str, ...], us
     out = ("--out", used.parent / "f.png")
     database = () if command[0] in {"workspace", "tools"} else ("--db", used)
     ended = without("matplotlib", "figure", *command, *out, *database)
-    line = "affcli: figures need Matplotlib and Pillow; install them: pip install 'affcli[figures]'\n"
+    line = (
+        "affcli: figures need Matplotlib and Pillow; install them: pip install 'affcli[figures]'\n"
+    )
     assert ended == Ended(2, "", line)
     assert names_in(used.parent) == before
 

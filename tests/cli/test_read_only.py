@@ -15,7 +15,11 @@ from tests.cli.program import ROOT, Ended, environment, names_in, one_printable_
 READING = (
     *(("report",), ("sql", "select count(*) from affordance"), ("db", "info")),
     *(("table", "list"), ("table", "show", "1"), ("table", "export")),
-    *(("verify", "--rows", "9"), ("predict", "--pushes", "9"), ("replay", "--run", "1", "--steps", "1-3")),
+    *(
+        ("verify", "--rows", "9"),
+        ("predict", "--pushes", "9"),
+        ("replay", "--run", "1", "--steps", "1-3"),
+    ),
 )
 WRITING = (
     ("learn", "--tool", "stick", "--behaviors", "5"),

@@ -104,8 +104,8 @@ def test_without_a_database_there_is_nothing_to_replay(what: str, tmp_path: Path
 
 
 NEVER_WRITTEN = "holds a value that affcli did not write; restore a copy of the database"
-UNKNOWN = "a tool, goal, start or seed that affcli does not know; restore a copy of the database"
-ROW = "holds a behavior or a place that affcli does not know; restore a copy of the database"
+UNKNOWN = "holds a value that affcli did not write; restore a copy of the database"
+ROW = UNKNOWN
 
 HOSTILE = {
     "tool": ("trial set tool = '<script>'", 3, UNKNOWN),
@@ -179,7 +179,7 @@ def test_without_where_a_row_was_made_it_is_not_known_whether_it_is_lost(
     assert affcli("replay", SOLVED, "--db", used).code == 0
 
 
-RUN = "learning run 1 holds a tool, seed or number of behaviors that affcli does not know; restore"
+RUN = "learning run 1 holds a value that affcli did not write; restore"
 HOSTILE_RUNS = {
     "tool": ("tool = '<script>'", 3, RUN),
     "escape sequence": ("tool = char(27) || '[31mred'", 3, RUN),

@@ -26,9 +26,9 @@ from tests.cli.program import (
     refused,
     rows,
 )
-from tests.cli.test_camera import without
 from tests.cli.test_read_only import as_nobody
 from tests.cli.test_replay import SOLVED, same
+from tests.cli.without import without
 
 SIZE = (480, 460)
 PX = 13.55

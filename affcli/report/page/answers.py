@@ -140,4 +140,5 @@ def same(content: Content) -> str:
     return (
         f"{equal} of {len(content.replays)} replays equal their stored record to the bit, step by "
         "step: poses, rows and counters."
+        + (" Those that differ say so." if equal < len(content.replays) else "")
     )
