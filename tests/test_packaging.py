@@ -72,6 +72,9 @@ def test_the_wheel_holds_the_program_and_its_migrations(wheel: Path) -> None:
     assert "affcli/py.typed" in names
     modules = {str(path.relative_to(ROOT)) for path in (ROOT / "affcli").rglob("*.py")}
     assert modules <= set(names)
+    page = {f"affcli/report/page/{p.name}" for p in (ROOT / "affcli/report/page").glob("*.*")}
+    assert {Path(name).suffix for name in page} == {".py", ".j2", ".css", ".js"}
+    assert page <= set(names)
     outside = [name for name in names if not name.startswith(("affcli/", "affcli-"))]
     assert outside == []
     assert f"\nVersion: {affcli.__version__}\n" in described
@@ -94,3 +97,9 @@ def test_it_works_outside_of_the_checkout(installed: Path, tmp_path: Path) -> No
         assert driver.execute("PRAGMA application_id").fetchone()[0] == 0x61666663
     shown = ran(program, "report", cwd=tmp_path)
     assert "Run 1: what the stick affords, by behavior" in shown
+    ran(program, "report", "--html", "page.html", cwd=tmp_path)
+    page = (tmp_path / "page.html").read_text()
+    source = ROOT / "affcli" / "report" / "page"
+    for name in ("style.css", "tables.js"):
+        assert (source / name).read_text() in page
+    assert "<title>What the robot learned: affcli.db</title>" in page
