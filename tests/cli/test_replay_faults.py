@@ -175,7 +175,7 @@ def test_without_where_a_row_was_made_it_is_not_known_whether_it_is_lost(
 ) -> None:
     altered(used, change)
     line = refused(3, "replay", "21", "--db", used)
-    assert "does not say where it began; restore a copy of the database" in line
+    assert f" of learning run 1 {NEVER_WRITTEN}" in line
     assert affcli("replay", SOLVED, "--db", used).code == 0
 
 
