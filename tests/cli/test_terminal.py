@@ -53,7 +53,7 @@ def shell(command: str, database: Path) -> Ended:
         "affcli report --db FILE | head -1",
         "affcli sql 'select * from affordance_wide' --json --db FILE | head -1",
         "affcli table export --db FILE | head -1",
-        "affcli solve --goal 1 --explain --db FILE | head -1",
+        "affcli solve --goal 1 --explain --db FILE 2>&- | head -1",
         "affcli learn --tool stick --behaviors 5 --db FILE 2>&1 | true",
         "affcli replay 5 --db FILE 2>&- | head -1",
         "affcli replay --run 1 --steps 1-9 --db FILE 2>&- | head -1",
