@@ -16,7 +16,7 @@ from affcli.core.observation import Movement
 RADIUS = 1.5
 """How far from the attractor's place in a row, as seen from the wrist, the row still tells what
 will happen (in). Choice, for the paper names no rule: on robots of seed 100, all five tools
-together, the fewest answers are wrong at 1, and hits exceed false alarms by most at 2
+together, the fewest answers are wrong at 1.25, and hits exceed false alarms by most at 2
 (``experiments/verification``)."""
 
 NO_MOVEMENT = Movement(0.0, 0.0, 0.0)
