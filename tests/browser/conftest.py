@@ -29,20 +29,33 @@ QUIET = (
 REASON = "no browser here: make test-browser installs one"
 
 
+def program() -> str | None:
+    """Return the system's browser; None when there is none, or nothing to drive it with."""
+    drivers = (find_spec(name) for name in ("playwright", "axe_playwright_python"))
+    return next(filter(None, map(shutil.which, NAMES)), None) if all(drivers) else None
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Skip the tests of this folder without a browser; with `--browser` they fail."""
+    if config.getoption("--browser") or program() is not None:
+        return
+    for item in items:
+        if item.path.is_relative_to(Path(__file__).parent):
+            item.add_marker(pytest.mark.skip(reason=REASON))
+
+
 @pytest.fixture(scope="session")
-def browser(request: pytest.FixtureRequest) -> "Iterator[Browser]":
-    """The system's browser; without one the tests are skipped, with `--browser` they fail."""
-    program = next(filter(None, map(shutil.which, NAMES)), None)
-    if program is None or find_spec("playwright") is None:
-        if request.config.getoption("--browser"):
-            pytest.fail(REASON)
-        pytest.skip(REASON)
+def browser() -> "Iterator[Browser]":
+    """The system's browser."""
+    found = program()
+    if found is None:
+        pytest.fail(REASON)
     from playwright.sync_api import sync_playwright
 
     # Chromium's sandbox refuses to be run by root.
     flags = [*QUIET, "--no-sandbox"] if os.getuid() == 0 else list(QUIET)
     with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=program, args=flags)
+        started = playwright.chromium.launch(executable_path=found, args=flags)
         yield started
         started.close()
 
