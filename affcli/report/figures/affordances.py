@@ -146,8 +146,7 @@ def affordances_figure(
                 *(middle, 1.0 - 0.03 / layout.height, view.heading),
                 ha="center",
                 va="top",
-                fontsize=8.0,
-                fontweight="bold",
+                fontsize=9.0,
                 **literal(),
             )
             for (row, column), call in panels.items():
