@@ -14,8 +14,8 @@ from affcli.cli.options import (
     checked_sensor,
     checked_tool,
 )
-from affcli.cli.solve import learned_runs
-from affcli.cli.terminal import now, progress, say_trials, show, show_json
+from affcli.cli.solve import learned_runs, say_trials
+from affcli.cli.terminal import now, progress, show, show_json
 from affcli.errors import UsageError
 
 
@@ -67,4 +67,4 @@ def break_tool(
         for number, trial in zip(numbers, trials, strict=True)
         if any(step.lost for step in trial.steps)
     ]
-    say_trials(numbers, (tried_in_vain or numbers)[0])
+    say_trials(numbers, (tried_in_vain or numbers)[0], database)

@@ -54,6 +54,11 @@ TrialSensor = Annotated[
 ]
 
 
+def with_database(command: str, database: Path) -> str:
+    """Return a command to suggest, with the database named when it is not the usual one."""
+    return command if database == DEFAULT_DATABASE else f"{command} --db {one_line(database)}"
+
+
 def checked_sensor(kind: str | None) -> SensorKind | None:
     """Return the kind of sensor asked for, None for none; UsageError when there is none such."""
     if kind is None:

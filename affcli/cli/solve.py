@@ -1,5 +1,6 @@
 """``affcli solve``: bring the attractor over a goal with what was learned (§6.2, §7.1)."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -15,8 +16,9 @@ from affcli.cli.options import (
     checked_sensor,
     checked_starts,
     checked_tool,
+    with_database,
 )
-from affcli.cli.terminal import now, say_trials, show, show_json
+from affcli.cli.terminal import now, say, show, show_json
 from affcli.core.tool import TOOL_PARTS
 from affcli.errors import UsageError
 
@@ -97,8 +99,16 @@ def solve(
     else:
         show(solve_table(goal, [(t.trial, t.end) for t in trials], used))
     numbers = [trial.id for trial in trials]
-    say_trials(numbers, numbers[-1])
+    say_trials(numbers, numbers[-1], database)
     return 0 if len(starts) > 1 or all(t.solved for t in trials) else 1
+
+
+def say_trials(numbers: Sequence[int], worth_seeing: int, database: "Path") -> None:
+    """Say which trials were saved, and how to see one of them."""
+    first, last = numbers[0], numbers[-1]
+    which = f"trial {first}" if first == last else f"trials {first} to {last}"
+    replay = with_database(f"affcli replay {worth_seeing}", database)
+    say(f"{which} saved; to see why each row was chosen: {replay}")
 
 
 def learned_runs(store: "Store", tool: str | None, database: "Path") -> list["LearningRunInfo"]:
@@ -110,11 +120,10 @@ def learned_runs(store: "Store", tool: str | None, database: "Path") -> list["Le
     names = [tool] if tool is not None else list(TOOL_PARTS)
     runs = [run for run in map(store.latest_run, names) if run is not None]
     if not runs:
-        where = "" if database == DEFAULT_DATABASE else f" --db {database}"
         only = " but by robots of a reproduction" if store.sessions("reproduce") else ""
+        learning = with_database(f"affcli learn --tool {tool or 't-hook'}", database)
         raise UsageError(
-            f"nothing learned with the {tool or 'tools'} in {database}{only}; "
-            f"first run: affcli learn --tool {tool or 't-hook'}{where}"
+            f"nothing learned with the {tool or 'tools'} in {database}{only}; first run: {learning}"
         )
     return runs
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 from affcli.errors import AffcliError, one_line
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator
 
     from rich.console import Console, RenderableType
     from rich.progress import Progress, TaskID
@@ -49,13 +49,6 @@ def now() -> str:
 def say(message: str) -> None:
     """Write a message to stderr."""
     _write(sys.stderr, f"{message}\n")
-
-
-def say_trials(numbers: "Sequence[int]", worth_seeing: int) -> None:
-    """Say which trials were saved, and how to see one of them."""
-    first, last = numbers[0], numbers[-1]
-    which = f"trial {first}" if first == last else f"trials {first} to {last}"
-    say(f"{which} saved; to see why each row was chosen: affcli replay {worth_seeing}")
 
 
 def show(*renderables: "RenderableType") -> None:

@@ -32,7 +32,8 @@ def test_all_starts_and_all_learned_tools_by_default(learned: Path) -> None:
 
 def test_the_table_says_how_each_trial_ended(learned: Path) -> None:
     ended = done("solve", "--goal", "1", "--tool", "stick", "--db", learned)
-    saved = "trials 1 to 4 saved; to see why each row was chosen: affcli replay 4"
+    replay = f"affcli replay 4 --db {learned}"
+    saved = f"trials 1 to 4 saved; to see why each row was chosen: {replay}"
     assert ended.err.strip() == saved
     title, headings, _, *table, caption = ended.out.splitlines()
     assert title == "Goal 1: outcome (steps) by start"
@@ -46,7 +47,8 @@ def test_the_table_says_how_each_trial_ended(learned: Path) -> None:
 def test_a_single_start_that_fails_is_exit_1(learned: Path) -> None:
     """The stick cannot pull, so it never brings the attractor to goal 1, nearer to the robot."""
     ended = affcli("solve", "--goal", "1", "--tool", "stick", "--start", "1", "--db", learned)
-    saved = "trial 1 saved; to see why each row was chosen: affcli replay 1\n"
+    replay = f"affcli replay 1 --db {learned}"
+    saved = f"trial 1 saved; to see why each row was chosen: {replay}\n"
     assert (ended.code, ended.err) == (1, saved)
     assert "0/1" in ended.out
     assert done("solve", "--goal", "1", "--tool", "stick", "--db", learned).out.count("0/4") == 2
