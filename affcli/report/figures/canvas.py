@@ -69,9 +69,10 @@ METADATA: dict[str, dict[str, None]] = {
 @contextmanager
 def style() -> Iterator[None]:
     """Draw as affcli does inside the ``with`` block, whatever a ``matplotlibrc`` says."""
-    with mpl.rc_context():
-        mpl.rcdefaults()
-        mpl.rcParams.update(STYLE)
+    # mpl.rcdefaults() would first read the styles in the person's home, which may be closed to us.
+    settings: dict[Any, Any] = {**mpl.rcParamsDefault, **STYLE}
+    del settings["backend"]
+    with mpl.rc_context(settings):
         yield
 
 
