@@ -1,6 +1,10 @@
 """What holds for all tests."""
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("unhurried", deadline=None)
+settings.load_profile("unhurried")  # no test is about speed, and the machine may be busy
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
