@@ -39,7 +39,7 @@ demo: $(INSTALLED)
 
 ## test          run the tests
 test: $(INSTALLED_DEV)
-	$(VENV)/bin/pytest
+	$(VENV)/bin/pytest --numprocesses auto --dist loadfile
 
 ## test-browser  test the page in a real browser; installs what it needs
 test-browser: $(INSTALLED_BROWSER)

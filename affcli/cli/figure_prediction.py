@@ -39,7 +39,9 @@ def prediction(
     database: Database = DEFAULT_DATABASE,
     force: Force = False,
 ) -> None:
-    """Draw how well a table predicts fresh pushes, against how many rows it was learned from.
+    """Draw how well a table predicts fresh pushes.
+
+    Against how many rows it was learned from.
 
     The numbers are those of `affcli predict` with as many pushes.
     """

@@ -32,7 +32,7 @@ def trial(
     database: Database = DEFAULT_DATABASE,
     force: Force = False,
 ) -> None:
-    """Draw a trial as a film strip (Figs. 10 and 11).
+    """Draw a trial as a film strip, as in Figures 10 and 11.
 
     Over each panel: the step, its behavior and the row tried; whether it replicated, and the row's
     counters afterwards (successes/uses). Of a trial of many steps some are chosen.
@@ -65,7 +65,9 @@ def results(
     database: Database = DEFAULT_DATABASE,
     force: Force = False,
 ) -> None:
-    """Draw our intervals with the paper's counts: 20 cells, all trials, the broken tool.
+    """Draw our intervals with the paper's counts.
+
+    Of the 20 cells, of all trials, and of the broken tool.
 
     Of a finished reproduction; where there is none, what affcli solve gave, one robot a tool.
     """

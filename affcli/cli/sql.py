@@ -20,8 +20,8 @@ def sql(
 ) -> None:
     """Ask the database one question in SQL.
 
-    Tables: affordance, behavior, learning_run, session, trial, step; views: affordance_table,
-    affordance_wide. Nothing can be written.
+    Tables: affordance, behavior, learning_run, session, trial, step, verification, replication;
+    views: affordance_table, affordance_wide. Nothing can be written.
     """
     if as_json and as_csv:
         raise UsageError("give --json or --csv, not both")

@@ -17,7 +17,7 @@ def show_row(
     """Show one row in full.
 
     What was done and seen, what is expected of it, its counters, where it comes from, and every
-    step of a trial that tried it.
+    step of a trial and try of a verification that used it.
     """
     checked_count("row", row_id, LARGEST_ID)
 
@@ -29,8 +29,9 @@ def show_row(
         stored = store.affordance(row_id)
         run = store.learning_run(stored.run_id)
         history = history_of(store, row_id)
+        tries = store.row_tries(row_id)
     region = region_of(tool_of(run), stored)
     if as_json:
-        show_json(row_json(stored, region, run, history))
+        show_json(row_json(stored, region, run, history, tries))
     else:
-        show(*row_tables(stored, region, run, history))
+        show(*row_tables(stored, region, run, history, tries))

@@ -132,7 +132,8 @@ def prediction_tables(
     table = Sheet(
         ("rows", "hits", "false alarms", *ERROR_COLUMNS),
         title=f"{title}: what it predicts of {len(pushes)} fresh pushes, {moved} of which moved",
-        caption="rows: the first so many that were learned; hits, false alarms: of the pushes that "
+        caption="rows: the first so many that were learned, without excluded ones; hits, false "
+        "alarms: of the pushes that "
         "moved the attractor, and of those that did not, the share of which a row within "
         f"{radius:g} in said they would, with its 95 % interval; degrees, inches: median error of "
         "the hits, and what 95 % of them stay below",

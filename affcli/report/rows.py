@@ -10,6 +10,7 @@ from affcli.core.affordance import Affordance
 from affcli.core.geometry import Point, direction_degrees
 from affcli.core.observation import Movement, Observation
 from affcli.core.trial import LearningSpec, TrialSpec
+from affcli.core.verification import Tried
 from affcli.errors import one_line
 from affcli.report.learning import whole_degrees
 from affcli.report.sheet import Sheet
@@ -151,14 +152,32 @@ def rows_json(rows: Sequence[tuple[StoredRow, str]]) -> list[dict[str, Any]]:
 
 
 def row_tables(
-    stored: StoredRow, region: str, run: LearningRun, history: Sequence[Use]
+    stored: StoredRow,
+    region: str,
+    run: LearningRun,
+    history: Sequence[Use],
+    tries: Sequence[Tried] = (),
 ) -> tuple[RenderableType, ...]:
-    """Return one row in full, its two observation vectors, and every step that tried it."""
-    return _facts(stored, region, run), _observations(stored.row), _history(history)
+    """Return one row in full, its two observation vectors, and all that tried it.
+
+    Args:
+        stored: the row.
+        region: the part of the tool nearest to the attractor when it was made.
+        run: which made it.
+        history: the steps of trials that tried it.
+        tries: those of verifications that updated the table.
+    """
+    verified = (_tries(tries),) if tries else ()
+    facts, observations = _facts(stored, region, run), _observations(stored.row)
+    return facts, observations, _history(history), *verified
 
 
 def row_json(
-    stored: StoredRow, region: str, run: LearningRun, history: Sequence[Use]
+    stored: StoredRow,
+    region: str,
+    run: LearningRun,
+    history: Sequence[Use],
+    tries: Sequence[Tried] = (),
 ) -> dict[str, Any]:
     """Return what `row_tables` shows as JSON types."""
     row = stored.row
@@ -169,6 +188,9 @@ def row_json(
         "end": row.end._asdict(),
         "learned": {"session": run.session_id, "seed": run.spec.seed, "robot": run.spec.robot},
         "history": [_use_json(step, trial) for step, trial in history],
+        "verifications": [
+            {**one._asdict(), "expected": one.expected[:2], "seen": one.seen[:2]} for one in tries
+        ],
     }
 
 
@@ -231,6 +253,27 @@ def _history(history: Sequence[Use]) -> Sheet | Text:
             _moved(step.seen),
             f"{verdict}, excluded" if step.died else verdict,
             f"{before.times_successful}/{before.times_used} -> {after[0]}/{after[1]}",
+        )
+    return sheet
+
+
+def _tries(tries: Sequence[Tried]) -> Sheet:
+    """Return the tries of verifications, which update the stored counters."""
+    sheet = Sheet(
+        ("verification", "try", "shape", "expected", "seen", "replicated", "successes/uses"),
+        title=f"Tried by verify --update {len(tries)} time{'s' if len(tries) != 1 else ''}",
+        left=("shape", "replicated"),
+    )
+    for one in tries:
+        verdict = "yes" if one.replicated else "no, blocked" if one.blocked else "no"
+        sheet.add(
+            str(one.verification),
+            str(one.number),
+            one_line(one.shape),
+            _moved(one.expected),
+            _moved(one.seen),
+            f"{verdict}, excluded" if one.died else verdict,
+            f"{one.before[0]}/{one.before[1]} -> {one.after[0]}/{one.after[1]}",
         )
     return sheet
 

@@ -4,11 +4,12 @@ from collections.abc import Mapping
 
 import sqlalchemy as sa
 
+from affcli.core.observation import Movement
 from affcli.core.trial import Truth
-from affcli.core.verification import ReplicationRecord, Verdict, VerificationSpec
+from affcli.core.verification import ReplicationRecord, Tried, Verdict, VerificationSpec
 from affcli.store.connection import Connected, insert_one
 from affcli.store.counting import count_use
-from affcli.store.mapping import replication_row, to_json
+from affcli.store.mapping import reading_what_was_written, replication_row, to_json
 from affcli.store.rows import VerificationRow
 from affcli.store.tables import affordance, replication, trial, verification
 
@@ -72,6 +73,18 @@ class Verifications(Connected):
             count_use(connection, self.path, record, affordance_id, "tries")
             insert_one(connection, replication, row)
 
+    def row_tries(self, row_id: int) -> tuple[Tried, ...]:
+        """Return the tries of a row in stored verifications, oldest first."""
+        r, v = replication.c, verification.c
+        wanted = (
+            sa.select(replication, v.shape)
+            .select_from(replication.join(verification, v.id == r.verification_id))
+            .where(r.affordance_id == row_id)
+            .order_by(r.verification_id, r.number)
+        )
+        with reading_what_was_written(f"a try of affordance {row_id}"):
+            return tuple(map(_tried, self.mappings(wanted)))
+
     def end_verification(
         self,
         verification_id: int,
@@ -103,3 +116,19 @@ class Verifications(Connected):
                     finished_at=now,
                 )
             )
+
+
+def _tried(row: sa.RowMapping) -> Tried:
+    """Return a try from its columns and the shape that was held."""
+    return Tried(
+        verification=row["verification_id"],
+        number=row["number"],
+        shape=row["shape"],
+        expected=Movement(row["expected_dx"], row["expected_dy"], 0.0),
+        seen=Movement(row["seen_dx"], row["seen_dy"], 0.0),
+        replicated=bool(row["replicated"]),
+        blocked=row["status"] is None,
+        died=bool(row["died"]),
+        before=(row["times_successful_before"], row["times_used_before"]),
+        after=(row["times_successful_after"], row["times_used_after"]),
+    )

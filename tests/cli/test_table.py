@@ -286,6 +286,20 @@ def test_the_history_of_a_row_is_every_step_that_tried_it(used: Path) -> None:
     ]
 
 
+def test_the_tries_of_a_verification_explain_the_counters_too(used: Path) -> None:
+    """`verify --update` changes stored counters: what changed them stands beside the steps."""
+    done("verify", "--tool", "t-hook", "--shape", "stick", "--rows", "30", "--update", "--db", used)
+    query = """SELECT affordance_id, number, replicated FROM replication ORDER BY number"""
+    for row_id, number, replicated in rows(used, query):
+        shown = done("table", "show", str(row_id), "--json", "--db", used).json
+        (tried,) = shown["verifications"]
+        assert (tried["number"], tried["shape"]) == (number, "stick")
+        assert tried["replicated"] == bool(replicated)
+        assert tried["after"] == [shown["times_successful"], shown["times_used"]]
+    out = done("table", "show", str(row_id), "--db", used).out
+    assert "\nTried by verify --update 1 time\n" in out
+
+
 def test_a_row_names_its_components_as_the_paper_does(used: Path) -> None:
     out = done("table", "show", "1", "--db", used).out
     ((seen,),) = rows(used, "SELECT start_wrist_to_object_y FROM affordance WHERE id = 1")

@@ -180,5 +180,5 @@ def test_results_of_single_robots(store: Store, run: LearningRunInfo) -> None:
 def test_without_matplotlib_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     require_figures()
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(UsageError, match=r"install it: pip install 'affcli\[figures\]'"):
+    with pytest.raises(UsageError, match=r"install them: pip install 'affcli\[figures\]'"):
         require_figures()

@@ -123,9 +123,16 @@ def test_the_workspace_shows_goals_starts_tool_and_reach() -> None:
     for goal in goal_regions(WORKSPACE.layout).values():
         assert any(math.dist(goal.center, middle) < 1e-9 for middle in squares)
     arcs = [patch for patch in axes.patches if isinstance(patch, Arc)]
-    assert [arc.width / 2 for arc in arcs] == pytest.approx([REACH.inner, REACH.outer])
-    assert [(arc.theta1, arc.theta2) for arc in arcs] == [(0.0, 180.0)] * 2
+    # The inner bound, 0.04 in, would be a speck on the arm's base.
+    assert [arc.width / 2 for arc in arcs] == pytest.approx([REACH.outer])
+    assert [(arc.theta1, arc.theta2) for arc in arcs] == [(0.0, 180.0)]
     assert outlines(axes, dashed=False) == 5
+
+
+def test_an_arm_that_cannot_come_near_has_two_bounds() -> None:
+    (axes,) = workspace_figure(WORKSPACE, T_HOOK, replace(REACH, inner=6.0)).axes
+    arcs = [patch for patch in axes.patches if isinstance(patch, Arc)]
+    assert [arc.width / 2 for arc in arcs] == pytest.approx([6.0, REACH.outer])
 
 
 def test_every_part_of_the_tools_is_named_once_and_what_broke_off_is_dashed() -> None:

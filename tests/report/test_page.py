@@ -67,7 +67,7 @@ def test_one_robot_cannot_tell() -> None:
     failed = replay(spec(2), Outcome.STEP_LIMIT, step(1, ROWS[70]))
     unfinished = replay(spec(3), None, step(1, ROWS[70]))
     said = answers.solved_by_one([WHOLE_TRIAL, failed, unfinished, *BROKEN_TRIALS])
-    assert "It solved 1 of 2 trials with whole tools." in said
+    assert "It solved 1 of 2 trials with whole tools, " in said
     assert "has tried nothing yet" in answers.solved_by_one([unfinished])
 
 

@@ -43,7 +43,7 @@ def prediction_figure(title: str, pushes: Sequence[Push]) -> Figure:
             _rows_axis(axes, growing)
         moved = sum(push.moved for push in pushes)
         left.set_title(f"{title}: {len(pushes)} pushes, {moved} moved", loc="left")
-        middle.set_title("thick: median; thin: 95 % lie below", loc="left")
+        middle.set_title("of the hits; thick: median; thin: 95 % lie below", loc="left")
         figure.legend(*middle.get_legend_handles_labels(), loc="outside upper right", ncols=3)
     return figure
 

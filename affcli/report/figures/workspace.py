@@ -27,8 +27,7 @@ HIGHEST, LOWEST = 5.0, 2.0
 def workspace_figure(workspace: Workspace, tool: Tool, reach: Reach) -> "Figure":
     """Return the table from above: goals, starts, the tool at its start, the bare arm's reach.
 
-    The arm of the default settings reaches to 0.04 in from its middle: the inner of the two dashed
-    bounds is a dot.
+    The arm of the default settings reaches to 0.04 in from its middle: only the outer bound shows.
 
     Args:
         workspace: the sizes.
@@ -121,7 +120,8 @@ def _draw_starts(axes: "Axes", workspace: Workspace) -> None:
 def _draw_arm(axes: "Axes", reach: Reach) -> None:
     """Draw the arm's base and, dashed, the bounds of its reach without a tool."""
     half = math.degrees(reach.waist_max)
-    for radius in (reach.inner, reach.outer):
+    # An inner bound of next to nothing would be a speck on the base.
+    for radius in (r for r in (reach.inner, reach.outer) if r > BASE_RADIUS):
         axes.add_patch(
             Arc(
                 (0.0, 0.0),

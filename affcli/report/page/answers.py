@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from affcli.core.affordance import Affordance
 from affcli.core.replay import Replay
 from affcli.core.trial import Outcome, Protocol, TrialRecord
 from affcli.report.breaking import Tally
@@ -13,6 +14,9 @@ from affcli.report.page.drawings import sector
 from affcli.report.paper import BROKEN_TOOL, EXTENSION_OF_REACH, TOTAL
 from affcli.report.reproduction import ENOUGH_ROBOTS, Reproduction
 from affcli.report.statistics import Spread
+
+MANY_ROBOTS = 40
+"""With fewer, no robot lies outside the central 95 %."""
 
 
 def reproduced(result: Reproduction) -> str:
@@ -33,6 +37,8 @@ def reproduced(result: Reproduction) -> str:
     if result.robots < ENOUGH_ROBOTS:
         few = f"{result.robots} robot{'s are' if result.robots != 1 else ' is'} too few to say."
         return f"{few} {numbers}"
+    if result.robots < MANY_ROBOTS:
+        numbers += " Of so few robots the central 95 % are all; what is rare may be missing."
     cells = len(result.cells)
     inside = f"in {cells - len(outside)} of {cells} cells the paper's count lies within the central"
     if outside:
@@ -47,8 +53,8 @@ def solved_by_one(trials: Sequence[Replay]) -> str:
         return "One robot cannot tell, and this one has tried nothing yet: affcli solve --goal 1"
     solved = sum(t.end.outcome is Outcome.SOLVED for t in ended if t.end)
     return (
-        f"One robot cannot tell. It solved {solved} of {len(ended)} trials with whole tools. For "
-        "an answer with intervals: affcli reproduce --robots 20"
+        f"One robot cannot tell. It solved {solved} of {len(ended)} trials with whole tools, each "
+        "from the table as it was then. For an answer with intervals: affcli reproduce --robots 20"
     )
 
 
@@ -66,8 +72,15 @@ def pulls(learned: LearnedRows) -> str:
     calls = Counter(row.exploratory.name for row in pulling)
     return (
         f"{len(pulling)} of the {len(learned.rows)} rows of the {learned.tool.name} move the puck "
-        f"toward the robot. The puck was nearest to the {_counted(parts)}; by {_counted(calls)}."
+        f"toward the robot{_of_these_excluded(pulling)}. The puck was nearest to the "
+        f"{_counted(parts)}; by {_counted(calls)}."
     )
+
+
+def _of_these_excluded(rows: Sequence[Affordance]) -> str:
+    """Return how many of some rows are not used any more, nothing when all are."""
+    gone = sum(2 * row.times_successful <= row.times_used for row in rows)
+    return f"; {gone} of these {'are' if gone != 1 else 'is'} excluded by now" if gone else ""
 
 
 def _counted(counts: Mapping[Any, int]) -> str:

@@ -112,7 +112,11 @@
       button.type = "button";
       const verdict = step.replicated ? html("span", "as expected", "yes") : html("span", step.blocked ? "blocked" : "not as expected", "no");
       button.append(`${i + 1}. ${step.close[0][1]}: `, verdict, step.died ? ", row excluded" : "");
-      button.addEventListener("click", () => { stop(); show(starts[i]); });
+      button.addEventListener("click", () => {
+        stop();
+        show(starts[i]);
+        byId("why").scrollIntoView({ block: "nearest" });
+      });
       item.append(button);
       return item;
     }));
