@@ -220,10 +220,11 @@ def test_solving_keeps_the_steps_before_it_was_stopped(learned: Path) -> None:
     process = started("solve", "--goal", "1", "--tool", "stick", "--db", learned)
     wait_until(lambda: bool(rows(learned, "SELECT 1 FROM step LIMIT 1")), process)
     ended = stopped(process, signal.SIGINT)
-    assert (ended.code, ended.err) in {
-        (130, "affcli: stopped; what was saved is kept\n"),
-        (0, ""),  # it was done already
-    }
+    if ended.err.startswith("trials 1 to 4 saved"):
+        # It was done already: what was left of it was Python's own leaving.
+        assert ended.code in {0, -signal.SIGINT}
+    else:
+        assert (ended.code, ended.err) == (130, "affcli: stopped; what was saved is kept\n")
     uses = "SELECT sum(times_used - 1), sum(times_successful - 1) FROM affordance"
     steps = "SELECT count(*), sum(replicated) FROM step"
     assert rows(learned, uses) == rows(learned, steps)
