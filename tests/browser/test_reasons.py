@@ -188,7 +188,7 @@ def test_the_table_of_trials_is_that_of_the_database(
     shown = [[row[0].removeprefix("Replay "), *row[1:]] for row in cells(page.locator("#list"))]
     assert shown == wanted
     assert len(shown) == 32
-    assert "16 older trials of this robot are left out." in text(page.locator("#trials"))
+    assert "the latest: 16 more are in the database." in text(page.locator("#trials"))
 
 
 def test_what_it_unlearned_is_what_the_database_says(

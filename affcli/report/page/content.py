@@ -62,7 +62,7 @@ class Content:
         reproduction: what many robots gave; None when there is none.
         tools: what the robot learned.
         replays: its trials, done again.
-        left_out: older trials of the same robot that are not shown.
+        left_out: trials of the same robot that are not shown.
         broken: each tool of its that broke.
         versions: what the records were made with, by package.
     """
