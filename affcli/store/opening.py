@@ -93,7 +93,11 @@ def _migrate(store: Store, driver: sqlite3.Connection) -> None:
 
 def _engine(driver: sqlite3.Connection) -> sa.Engine:
     """Return an engine whose one connection is `driver`."""
-    return sa.create_engine("sqlite://", creator=lambda: driver, poolclass=sa.StaticPool)
+    # Transactions are ended where they are begun, so nothing is left to reset: and after ctrl-C the
+    # driver may be closed already.
+    return sa.create_engine(
+        "sqlite://", creator=lambda: driver, poolclass=sa.StaticPool, pool_reset_on_return=None
+    )
 
 
 def _prepare(driver: sqlite3.Connection, path: Path, timeout: float, *, write: bool) -> None:
