@@ -9,13 +9,12 @@ from affcli.core.affordance import Affordance
 from affcli.core.behavior import BehaviorCall
 from affcli.core.tool import TOOL_PARTS, Tool, ToolName, paper_tools
 from affcli.errors import DatabaseError, UsageError, one_line
+from affcli.lab.plausible import check_numbers
 from affcli.report.fates import Fate, RowView, TableView, around_trial, compared, now
 from affcli.report.figures.words import tool_words
 from affcli.report.learning import clock
 from affcli.store import LearningRunInfo, Store, StoredRow, TrialInfo
 
-FARTHEST = 1e6
-"""Nothing is farther away (in), and no colour larger: the settings do not go beyond it."""
 EXCLUDED = "excluded: replication probability 1/2 or below"
 
 
@@ -157,11 +156,7 @@ def _rows(store: Store, run: LearningRunInfo) -> list[Affordance]:
 def _sound(rows: Sequence[StoredRow]) -> Sequence[StoredRow]:
     """Return the rows; DatabaseError when one lies where there is no table."""
     for row in rows:
-        if not all(abs(value) <= FARTHEST for value in (*row.row.start, *row.row.end)):
-            raise DatabaseError(
-                f"affordance {row.id} holds a value that affcli did not write; restore a copy of "
-                "the database"
-            )
+        check_numbers(f"affordance {row.id}", (*row.row.start, *row.row.end))
     return rows
 
 

@@ -1,19 +1,19 @@
 """A stored trial, gathered for its film strip."""
 
 from collections.abc import Iterable
+from itertools import chain
 
 from affcli.config import settings_from_json
 from affcli.core.behavior import BehaviorCall
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
-from affcli.core.task import GOAL_NUMBERS, START_NUMBERS, goal_regions, start_positions
-from affcli.core.tool import TOOL_PARTS, ToolName, paper_tools
+from affcli.core.task import goal_regions, start_positions
+from affcli.core.tool import ToolName, paper_tools
 from affcli.core.trial import TrialSpec
-from affcli.errors import DatabaseError, UsageError, one_line
+from affcli.errors import UsageError, one_line
+from affcli.lab.plausible import check_numbers, check_trial
 from affcli.report.film import FilmedStep, FilmedTrial
 from affcli.store import Store, StoredStep, TrialInfo
 
-FARTHEST = 1e4
-"""in; no length of this laboratory lies beyond it."""
 LONGEST_BEHAVIOR = 20
 """Letters of a behavior's name and distance; those of affcli have 17 at most."""
 
@@ -90,19 +90,11 @@ def _require_steps(trial_id: int, wanted: tuple[int, int], count: int) -> None:
 
 def _require_known(trial_id: int, spec: TrialSpec, steps: Iterable[FilmedStep]) -> None:
     """Refuse tools and places that no trial of affcli has."""
-    if not {spec.tool, spec.shape} <= set(TOOL_PARTS):
-        raise DatabaseError(f"trial {trial_id} holds a tool that affcli does not know")
-    if spec.goal not in GOAL_NUMBERS or spec.start not in START_NUMBERS:
-        raise DatabaseError(f"trial {trial_id} holds a goal or start that affcli does not know")
-    numbers: list[float] = []
+    check_trial(trial_id, spec)
     for step in steps:
-        for pair in (step.wrist_start, step.wrist_end, step.puck_start, step.puck_end):
-            numbers += pair
-        numbers += (*step.expected, *step.seen)
-    if not all(abs(number) < FARTHEST for number in numbers):  # nor is what is no number
-        raise DatabaseError(
-            f"trial {trial_id} holds a place that is on no table; restore a copy of the database"
-        )
+        places = (step.wrist_start, step.wrist_end, step.puck_start, step.puck_end)
+        movements = (*step.expected, *step.seen)
+        check_numbers(f"trial {trial_id}", (*chain.from_iterable(places), *movements))
 
 
 def _title(info: TrialInfo) -> str:

@@ -71,6 +71,20 @@ def check_starts(
             raise not_written(f"behavior {row.step} of learning run {run_id}")
 
 
+def check_numbers(place: str, numbers: Iterable[float]) -> None:
+    """Refuse numbers that are none, or that no laboratory has.
+
+    Args:
+        place: which record they are of, for the message.
+        numbers: lengths and colours (in, or of 255).
+
+    Raises:
+        DatabaseError: one of them is not within bounds.
+    """
+    if not _bounded(numbers):
+        raise not_written(place)
+
+
 def not_written(place: str) -> DatabaseError:
     """Return what to say of a record with a value that affcli does not write."""
     return DatabaseError(

@@ -229,10 +229,14 @@ def test_a_session_that_was_interrupted_is_not_drawn(name: str, reproduced: Path
 @pytest.mark.parametrize(
     ("spoilt", "name", "says"),
     [
-        ("trial SET shape = 'spoon'", "trial", "trial 9 holds a tool that affcli does not know"),
-        ("trial SET goal = goal + 9", "trial", "trial 9 holds a goal or start that affcli does"),
-        ("step SET true_end_x = 9e999", "trial", "trial 9 holds a place that is on no table"),
-        ("step SET expected_dy = -1e300", "trial", "trial 9 holds a place that is on no table"),
+        ("trial SET shape = 'spoon'", "trial", "trial 9 holds a value that affcli did not write"),
+        ("trial SET goal = goal + 9", "trial", "trial 9 holds a value that affcli did not write"),
+        ("step SET true_end_x = 9e999", "trial", "trial 9 holds a value that affcli did not write"),
+        (
+            "step SET expected_dy = -1e300",
+            "trial",
+            "trial 9 holds a value that affcli did not write",
+        ),
         ("affordance SET exploratory_params = 'far'", "trial", "trial 9 holds a value that affcli"),
         ("trial SET shape = 'spoon' WHERE id < 25", "adaptation", "holds a tool that affcli does"),
         ("trial SET outcome = 'lunch'", "results", "a trial holds a value that affcli did not w"),
