@@ -117,9 +117,9 @@ def interactive() -> bool:
 
 def asked(question: str) -> str | None:
     """Ask on stderr; return the answer without blanks around it, None at the end of the input."""
-    _write(sys.stderr, question)
     answer = ""
     try:
+        _write(sys.stderr, question)
         answer = sys.stdin.readline()
     finally:
         # After ctrl-D or ctrl-C the next words begin a line of their own.
