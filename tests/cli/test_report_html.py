@@ -345,10 +345,10 @@ def test_ctrl_c_leaves_no_half_of_a_page(tmp_path: Path) -> None:
     done("break-tool", "--db", database)
     page = tmp_path / "page.html"
     for signum, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
-        process = started("report", "--db", database, "--html", page)
-        wait_until(_reading(process, database), process)
-        process.send_signal(signum)
-        ended = ending(process)
+        with started("report", "--db", database, "--html", page) as process:
+            wait_until(_reading(process, database), process)
+            process.send_signal(signum)
+            ended = ending(process)
         assert ended.code == code
         assert ended.err == "affcli: stopped; what was saved is kept\n"
         assert names_in(tmp_path) == ["my.db"]
@@ -359,9 +359,15 @@ def _reading(process: subprocess.Popen[str], database: Path) -> Callable[[], boo
     files = Path(f"/proc/{process.pid}/fd")
     if not files.exists():
         return lambda: True
-    return lambda: any(
-        entry.exists() and entry.resolve() == database.resolve() for entry in files.iterdir()
-    )
+    return lambda: any(_leads_to(entry) == str(database.resolve()) for entry in files.iterdir())
+
+
+def _leads_to(link: Path) -> str | None:
+    """Return what an open file of another process is; it may be closed while we look."""
+    try:
+        return str(link.readlink())
+    except FileNotFoundError:
+        return None
 
 
 def test_the_program_as_a_whole_makes_a_page(used: Path, tmp_path: Path) -> None:
