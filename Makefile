@@ -21,7 +21,7 @@ INSTALLED_BROWSER := $(VENV)/.installed-browser
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help demo test test-browser check reproduce bench clean FORCE
+.PHONY: help demo test test-browser torture check reproduce bench clean FORCE
 
 ## help          list these targets
 help:
@@ -52,6 +52,10 @@ test-browser: $(INSTALLED_BROWSER)
 	  echo 'no browser here: install chromium, chromium-browser or google-chrome (Debian: apt install chromium)' >&2; exit 1; \
 	fi
 	$(VENV)/bin/pytest tests/browser --browser
+
+## torture       the long tests whole: a hundred kills, readers for a minute, fuzzing
+torture: $(INSTALLED_DEV)
+	$(VENV)/bin/pytest -m torture --torture --numprocesses auto --dist loadfile
 
 ## check         lint, formatting, types and import contracts
 check: $(INSTALLED_DEV)
