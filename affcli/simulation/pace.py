@@ -34,21 +34,20 @@ class Pace:
     """
 
     def __init__(self, parts: Sequence[ConvexPolygon], radius: float) -> None:
-        self._parts = parts
+        # A box is its own bounding box; the distance to a part that is none takes longer to find.
+        self._parts = [(*part.bounds, None if part.is_box else part) for part in parts]
         self._radius = radius
         self._touched = False
 
-    def next(
-        self, puck: tuple[float, float], tool: tuple[float, float], speed: float, left: int
-    ) -> tuple[int, int]:
+    def next(self, center: tuple[float, float], speed: float, left: int) -> tuple[int, int]:
         """Return how many short steps the next step takes, and how many such steps to make.
 
         Args:
-            puck, tool: where they are (in, table frame).
+            center: of the puck, from the tool's grasp point (in, tool frame).
             speed: of the tool (in/s).
             left: short steps left at this speed.
         """
-        overlap, clearance = self._distances(Point(puck[0] - tool[0], puck[1] - tool[1]))
+        overlap, clearance = self._distances(*center)
         lasting, self._touched = overlap > 0.0 and self._touched, overlap > 0.0
         if overlap > DEEP or (overlap > 0.0 and not lasting):
             return 1, min(SETTLE, left)
@@ -57,19 +56,22 @@ class Pace:
             return STRIDE, free // STRIDE
         return 1, max(1, free)
 
-    def _distances(self, center: Point) -> tuple[float, float]:
+    def _distances(self, x: float, y: float) -> tuple[float, float]:
         """Return how deep the puck overlaps a part, 0 if none; how far the nearest other is (in).
 
         Of two parts that it overlaps, the second is no distance away.
         """
-        overlap, clearance = 0.0, math.inf
-        for part in self._parts:
-            gap = part.box_distance(center) - self._radius
-            if gap < 0.0 and not part.is_box:
-                gap = part.distance(center) - self._radius
+        overlap, clearance, radius = 0.0, math.inf, self._radius
+        for left, bottom, right, top, slanted in self._parts:
+            # `ConvexPolygon.box_distance`, written out: this is the innermost of our own loops.
+            dx = left - x if x < left else x - right if x > right else 0.0
+            dy = bottom - y if y < bottom else y - top if y > top else 0.0
+            gap = math.hypot(dx, dy) - radius
+            if gap < 0.0 and slanted is not None:
+                gap = slanted.distance(Point(x, y)) - radius
             if gap < 0.0:
                 clearance = 0.0 if overlap > 0.0 else clearance
                 overlap = max(overlap, -gap)
-            else:
-                clearance = min(clearance, gap)
+            elif gap < clearance:
+                clearance = gap
         return overlap, clearance

@@ -1,0 +1,121 @@
+"""A puck and a tool on the table, as bodies of the physics engine (pymunk)."""
+
+import math
+from collections.abc import Callable, Sequence
+from functools import partial
+
+import pymunk
+from pymunk._chipmunk_cffi import lib as chipmunk
+
+from affcli.core.geometry import ConvexPolygon, Point, Pose
+from affcli.core.workspace import PuckGeometry, SurfaceFriction
+from affcli.simulation.physics_settings import PhysicsSettings
+from affcli.simulation.surface_friction import surface_friction
+from affcli.simulation.wrist_motion import STEP
+
+FAR_AWAY = (1e3, 1e3)
+"""Where no tool touches the puck (in)."""
+AT_REST = (0.0, 0.0)
+
+
+class PuckAndTool:
+    """One Space with the puck, which the table brakes, and the tool, which goes where it is moved.
+
+    What happens many times a push calls the engine's own functions: pymunk's wrappers of the same
+    functions, which make vectors and look for callbacks that we do not have, would cost as much as
+    the physics.
+
+    Args:
+        outlines: the tool's convex parts in the tool frame (in).
+        puck: the puck.
+        friction: all coefficients.
+        settings: how finely to solve.
+
+    Attributes:
+        step: advances everything by a time (s).
+        move_tool: gives the tool a velocity (in/s, table frame), which it keeps.
+    """
+
+    step: Callable[[float], None]
+    move_tool: Callable[[tuple[float, float]], None]
+
+    def __init__(
+        self,
+        outlines: Sequence[ConvexPolygon],
+        puck: PuckGeometry,
+        friction: SurfaceFriction,
+        settings: PhysicsSettings,
+    ) -> None:
+        space = pymunk.Space()
+        space.iterations = settings.iterations
+        space.collision_slop = settings.collision_slop
+        # The engine wants the share of an overlap that is left after a second.
+        space.collision_bias = (1.0 - settings.overlap_mended) ** round(1.0 / STEP)
+        # 1 is the least that works: with 0 the engine drops a contact before it is solved. No
+        # impulse outlives the step after a contact ends.
+        space.collision_persistence = 1
+        space.use_spatial_hash(64.0, 16)
+        body = pymunk.Body(puck.mass, 0.5 * puck.mass * puck.radius**2)
+        rim = pymunk.Circle(body, puck.radius)
+        rim.friction = 1.0
+        tool = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+        space.add(body, rim, tool)
+        for outline in outlines:
+            part = pymunk.Poly(tool, list(outline.vertices))
+            # The engine multiplies the two coefficients of a contact.
+            part.friction = friction.tool_puck
+            space.add(part)
+        joints = surface_friction(space.static_body, body, puck, friction)
+        space.add(*joints)
+        self._owned = (space, body, rim, tool, joints)  # the engine does not keep them alive
+        self._share = joints[0].max_force
+        self._space, self._puck, self._tool = space._space, body._body, tool._body  # noqa: SLF001
+        self._joints = [joint._constraint for joint in joints]  # noqa: SLF001
+        self.step = partial(chipmunk.cpSpaceStep, self._space)
+        self.move_tool = partial(chipmunk.cpBodySetVelocity, self._tool)
+
+    def lay_out(self, puck: Pose, wrist: Point) -> None:
+        """Put puck and tool somewhere, at rest, with nothing left of the push before.
+
+        Args:
+            puck: the puck's pose (in, rad, table frame).
+            wrist: where the tool's grasp point is (in, table frame).
+        """
+        # The engine starts each step from the impulses of the step before, also when that step was
+        # the last of another push. A step with the puck far away ends every contact, and one in
+        # which the joints may not exceed zero is the only way to make them forget.
+        self._place(FAR_AWAY, 0.0, wrist)
+        for joint in self._joints:
+            chipmunk.cpConstraintSetMaxForce(joint, 0.0)
+        self.step(STEP)
+        for joint in self._joints:
+            chipmunk.cpConstraintSetMaxForce(joint, self._share)
+        self._place((puck.x, puck.y), puck.angle, wrist)
+
+    def _place(self, puck: tuple[float, float], angle: float, wrist: Point) -> None:
+        """Put puck and tool somewhere, at rest."""
+        # The angle first: setting it later would move the body about its centre of gravity.
+        chipmunk.cpBodySetAngle(self._puck, angle)
+        chipmunk.cpBodySetPosition(self._puck, puck)
+        chipmunk.cpBodySetVelocity(self._puck, AT_REST)
+        chipmunk.cpBodySetAngularVelocity(self._puck, 0.0)
+        chipmunk.cpBodySetPosition(self._tool, wrist)
+        chipmunk.cpBodySetVelocity(self._tool, AT_REST)
+        chipmunk.cpSpaceReindexShapesForBody(self._space, self._puck)
+        chipmunk.cpSpaceReindexShapesForBody(self._space, self._tool)
+
+    def puck_pose(self) -> Pose:
+        """Return the puck's pose now (in, rad, table frame)."""
+        at = chipmunk.cpBodyGetPosition(self._puck)
+        return Pose(at.x, at.y, chipmunk.cpBodyGetAngle(self._puck))
+
+    def puck_speed(self) -> float:
+        """Return how fast the puck's centre moves now (in/s)."""
+        velocity = chipmunk.cpBodyGetVelocity(self._puck)
+        return math.hypot(velocity.x, velocity.y)
+
+    def puck_from_tool(self) -> tuple[float, float]:
+        """Return where the puck's centre is now, seen from the tool's grasp point (in)."""
+        puck = chipmunk.cpBodyGetPosition(self._puck)
+        tool = chipmunk.cpBodyGetPosition(self._tool)
+        return puck.x - tool.x, puck.y - tool.y
