@@ -18,8 +18,12 @@ from affcli.core.ports import Robot
 from affcli.core.task import GoalRegion
 from affcli.core.trial import Survivors
 
-LONG, SAMPLE = 8_192, 1_024
-"""From how many values on a sample is drawn, and about how large it is."""
+BLOCK = 32_768
+"""So many rows are computed at a time: a million at once would wait for the memory."""
+ALL = slice(None)
+
+LONG, SAMPLE, SPARSE = 8_192, 1_024, 128
+"""From how many values on a sample is drawn; at least how large it is; at most one of how many."""
 
 Value = TypeVar("Value", np.float64, np.bool_)
 
@@ -70,9 +74,12 @@ def wrist_within_reach(table: AffordanceTable, rows: Rows, seen: Observation, ro
     Not in the paper's list, yet its robot could not use such rows either. It stands before the sort
     so that the top 20 % are of rows that can be used.
     """
-    x = seen.object_x - _of(table.offset_x, rows)
-    y = seen.object_y - _of(table.offset_y, rows)
-    return _those(rows, robot.reaches(x, y))
+    reached = np.empty(len(rows), dtype=bool)
+    for block in _blocks(len(rows)):
+        x = seen.object_x - _of(table.offset_x, rows, block)
+        y = seen.object_y - _of(table.offset_y, rows, block)
+        reached[block] = robot.reaches(x, y)
+    return _those(rows, reached)
 
 
 def top_by_expected_distance(
@@ -87,18 +94,16 @@ def top_by_expected_distance(
     """
     if not len(rows):
         return rows
-    squared = _of(table.movement_x, rows) + (seen.object_x - goal.center.x)
-    squared *= squared
-    dy = _of(table.movement_y, rows) + (seen.object_y - goal.center.y)
-    dy *= dy
-    squared += dy
+    squared = np.empty(len(rows))
+    for block in _blocks(len(rows)):
+        dx = _of(table.movement_x, rows, block) + (seen.object_x - goal.center.x)
+        dy = _of(table.movement_y, rows, block) + (seen.object_y - goal.center.y)
+        dx *= dx
+        dy *= dy
+        np.add(dx, dy, out=squared[block])
     # 0.2 n in whole numbers: a fifth of 5 rows is 1, not the 2 that ceil(0.2 * 5.000000001) gives.
     kept = max(1, math.ceil(len(rows) * round(TOP_SHARE * 100) / 100))
-    limit = _smallest(squared, kept)
-    nearer = squared < limit
-    ties = np.flatnonzero(squared == limit)[: kept - int(np.count_nonzero(nearer))]
-    nearer[ties] = True
-    return _those(rows, nearer)
+    return rows[_smallest(squared, kept)]
 
 
 def least_repositioning(
@@ -114,12 +119,17 @@ def least_repositioning(
     return int(rows[np.argmin(dx * dx + dy * dy)])
 
 
-def _of(column: NDArray[Value], rows: Rows) -> NDArray[Value]:
-    """Return a column's values of some rows; the column itself when they are all (the quick way).
+def _blocks(n: int) -> list[slice]:
+    """Cut n rows into blocks whose intermediate results stay in the processor's cache."""
+    return [slice(a, a + BLOCK) for a in range(0, n, BLOCK)]
+
+
+def _of(column: NDArray[Value], rows: Rows, block: slice = ALL) -> NDArray[Value]:
+    """Return a column's values of some rows, or of a block of these; a view when they are all.
 
     Sound because rows are distinct and ascending: as many as the column is long, they are all.
     """
-    return column if len(rows) == len(column) else column[rows]
+    return column[block] if len(rows) == len(column) else column[rows[block]]
 
 
 def _those(rows: Rows, kept: NDArray[np.bool_]) -> Rows:
@@ -130,24 +140,43 @@ def _those(rows: Rows, kept: NDArray[np.bool_]) -> Rows:
     return rows[np.flatnonzero(kept)]
 
 
-def _smallest(values: NDArray[np.float64], k: int) -> float:
-    """Return the k-th smallest value, k counting from 1.
+def _smallest(values: NDArray[np.float64], k: int) -> Rows:
+    """Return where the k smallest values stand (k,), ascending; of equal values the first."""
+    low, found = _probably_small(values, k)
+    smaller = values[found] if len(found) < len(values) else values
+    limit = _kth(smaller, k, low)
+    found = found[np.flatnonzero(smaller <= limit)]
+    if len(found) > k:
+        ties = np.flatnonzero(values[found] == limit)
+        found = np.delete(found, ties[k - len(found) :])
+    return found
 
-    A sample brackets it in a long array, so that only the values in the bracket are partitioned;
-    should the sample mislead, all are. The result is exact either way.
+
+def _probably_small(values: NDArray[np.float64], k: int) -> tuple[float, Rows]:
+    """Return where at least the k smallest values stand, of many not many more; and a value that
+    the k-th probably exceeds.
     """
-    n = len(values)
-    if n >= LONG:
-        sample = np.sort(values[:: n // SAMPLE])
-        at = k * len(sample) // n
-        margin = len(sample) // 16
-        low = sample[max(0, at - margin)]
-        high = sample[min(len(sample) - 1, at + margin)]
-        below = int(np.count_nonzero(values < low))
-        bracket = values[np.flatnonzero((values >= low) & (values <= high))]
-        if below < k <= below + len(bracket):
-            return float(np.partition(bracket, k - below - 1)[k - below - 1])
-    return float(np.partition(values, k - 1)[k - 1])
+    low = -math.inf
+    if len(values) >= LONG:
+        sample = np.sort(values[:: min(len(values) // SAMPLE, SPARSE)])
+        at = k * len(sample) // len(values)
+        # Five standard deviations of the k-th value's place in a random sample, at their widest.
+        margin = math.ceil(2.5 * math.sqrt(len(sample)))
+        if at + margin < len(sample):
+            found = np.flatnonzero(values <= sample[at + margin])
+            if len(found) >= k:  # else the sample misled
+                return float(sample[at - margin]) if at >= margin else low, found
+    return low, np.arange(len(values))
+
+
+def _kth(values: NDArray[np.float64], k: int, low: float) -> float:
+    """Return the k-th smallest value; quicker when it is no less than `low`, and few others are."""
+    below = 0
+    if low > -math.inf:
+        within = values[np.flatnonzero(values >= low)]
+        if len(values) - len(within) < k:
+            below, values = len(values) - len(within), within
+    return float(np.partition(values, k - below - 1)[k - below - 1])
 
 
 def choose_row(table: AffordanceTable, seen: Observation, goal: GoalRegion, robot: Robot) -> Choice:
