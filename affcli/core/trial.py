@@ -26,6 +26,10 @@ class Protocol(StrEnum):
     """§7.2: another shape in the colour of the tool that was learned."""
 
 
+BROKEN_TOOL, BROKEN_SHAPE = "t-hook", "l-hook"
+"""§7.2: the learning was performed with a T-hook which was then replaced with an L-hook."""
+
+
 class Counters(StrEnum):
     """Which counters a trial starts from and where its updates go."""
 

@@ -5,9 +5,8 @@ from collections import Counter
 from affcli.config import differences, settings_from_json
 from affcli.core.task import GOAL_NUMBERS
 from affcli.core.tool import TOOL_PARTS
-from affcli.core.trial import Outcome, Protocol
+from affcli.core.trial import BROKEN_TOOL, Outcome, Protocol
 from affcli.lab.plausible import not_written
-from affcli.lab.reproduction import BROKEN_TOOL
 from affcli.report.overview import Breaking, Overview, ProtocolFigures
 from affcli.report.reproduction import Reproduction
 from affcli.store import SessionInfo, Store

@@ -14,7 +14,14 @@ from affcli.config import Settings
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.geometry import Point, Pose
 from affcli.core.tool import TOOL_PARTS
-from affcli.core.trial import LearningSpec, Protocol, RobotRecord, TrialRecord
+from affcli.core.trial import (
+    BROKEN_SHAPE,
+    BROKEN_TOOL,
+    LearningSpec,
+    Protocol,
+    RobotRecord,
+    TrialRecord,
+)
 from affcli.errors import AffcliError
 from affcli.lab.learning import LearningRun
 from affcli.lab.sensing import calibration_of
@@ -22,9 +29,6 @@ from affcli.lab.trials import LostAffordances, trial_specs, whole_trial
 from affcli.lab.versions import versions
 from affcli.simulation.world import World
 from affcli.store import PackedRobot, Store, pack_robot
-
-BROKEN_TOOL, BROKEN_SHAPE = "t-hook", "l-hook"
-"""§7.2: the learning was performed with a T-hook which was then replaced with an L-hook."""
 
 HOURS = 1.0
 """§6: one hour of run time for every tool."""

@@ -1,9 +1,8 @@
 """Our results, gathered for the figure that shows them beside the paper's (§7)."""
 
-from affcli.core.trial import Outcome, Protocol
+from affcli.core.trial import BROKEN_SHAPE, BROKEN_TOOL, Outcome, Protocol
 from affcli.errors import UsageError
 from affcli.lab.overview import reproduction_of
-from affcli.lab.reproduction import BROKEN_SHAPE, BROKEN_TOOL
 from affcli.lab.sessions import finished_session
 from affcli.report.paper import EXTENSION_OF_REACH
 from affcli.report.results import Results, SingleRobots, results_of_many, results_of_single
