@@ -70,7 +70,7 @@ reproduce: $(INSTALLED)
 
 ## bench         measure the speed
 bench: $(INSTALLED)
-	$(VENV)/bin/python experiments/bench.py
+	$(VENV)/bin/python experiments/speed/bench.py
 
 ## clean         remove .venv, caches, build products and demo.db; every other database stays
 clean:

@@ -116,7 +116,9 @@ def _against_c(loop: LoopInC, pushes: Sequence[Push], scale: Scale) -> dict[str,
             f"{equal}; {verdict(held)})"
         )
         found[key] = {**one.json(), **held, "steps_a_push": all_steps / pushed}
-    each = {name: ms(times, size) for name, times in (("ours", ours), ("c", paced), ("c_short", short))}
+    each = {
+        name: ms(times, size) for name, times in (("ours", ours), ("c", paced), ("c_short", short))
+    }
     print("loop: ms a push: " + ", ".join(f"{name} {value:.3f}" for name, value in each.items()))
     return {**found, "ms_a_push": each, "identical": identical}
 

@@ -1,12 +1,13 @@
 """gym-pusht's round agent pushes its T: 5 in are 100 of its pixels, so 1 in is 20.
 
-The world is gym-pusht's own: the T is 6 in long and its bars 1.5 in wide by that scale, the agent 1.5
-in across; no table friction but total damping, so the T stops when it is let go. The agent is put just
-before the middle of the T's crossbar and pushes it along the stem, 5 in at 5 in/s.
+The world is gym-pusht's own: by that scale the T is 6 in long, its bars 1.5 in wide and the agent
+1.5 in across. Its table has no friction but damps all speed away at once, so the T stops when it is
+let go. The agent is put just before the middle of the crossbar and pushes the T along its stem, 5 in
+at 5 in/s: nothing turns, nothing slips off.
 
-With --space: the physics alone. Its Space, in its steps of 10 ms, the agent given the speed it is to
-have. Without: the environment as it is used, `step` with the place to go to ten times a second; it
-moves the agent by a controller, ten physics steps each, and works out observation and reward.
+With --space: the physics alone. Its Space, in its steps of 10 ms, the agent given the speed it is
+to have. Without: the environment as it is used, `step` with the place to go to ten times a second;
+it moves the agent by a controller, ten physics steps each, and works out observation and reward.
 """
 
 import os
@@ -15,10 +16,10 @@ from typing import Any
 
 os.environ["PYGAME_HIDE_SUPPORT_PROMPT"] = "1"  # it would write into the answers
 
-import gym_pusht.envs.pusht as pusht  # noqa: E402
-import numpy as np  # noqa: E402
-import pymunk  # noqa: E402
-from serve import Move, Push, PushAll, serve, travels  # noqa: E402
+import numpy as np
+import pymunk
+from gym_pusht.envs import pusht
+from serve import Move, Push, PushAll, serve, travels
 
 PIXELS = 20.0
 STEP = 0.01
@@ -44,7 +45,7 @@ def begin(table: dict[str, Any]) -> PushAll:
         environment.agent.velocity = (0.0, 0.0)
         environment.block.velocity = (0.0, 0.0)
         environment.block.angular_velocity = 0.0
-        environment._set_state([*agent, *block, 0.0])
+        environment._set_state([*agent, *block, 0.0])  # noqa: SLF001
         return float(agent[0]), float(agent[1])
 
     places = [PIXELS * travel for travel in travels(table, CONTROL)]

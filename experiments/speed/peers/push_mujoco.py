@@ -2,7 +2,7 @@
 
 Its own default step of 2 ms, solver and contact model. Only those pairs can touch that do: puck and
 plane, puck and each part. All pushes of a round are one call of `mujoco.rollout`, so no Python runs
-between steps; that is the fastest use of it on one core (`mj_step` called from Python: a tenth more).
+between steps.
 """
 
 from typing import Any

@@ -1,8 +1,8 @@
 """The T-hook, a kinematic body, pushes the puck, a cylinder on a plane: PyBullet, in decimetres.
 
-Its own default step of 1/240 s and 50 solver iterations at most. Bullet's collision margins are meant
-for things the size of a hand or more, hence decimetres (gravity 98 dm/s^2) and not metres. The tool
-has no mass: it is put where it belongs before each step and given the speed it has.
+Its own default step of 1/240 s and solver. Bullet's collision margins are meant for things larger
+than a puck of 0.08 m, hence decimetres (gravity 98 dm/s^2) and not metres. The tool has no mass: it
+is put where it belongs before each step and given the speed it has.
 """
 
 from typing import Any
@@ -43,7 +43,11 @@ def begin(table: dict[str, Any]) -> PushAll:
     )
     tool = pybullet.createMultiBody(0.0, shape)
     # The engine multiplies the two coefficients of a contact.
-    for body, slides in ((plane, friction["puck_table"]), (puck, 1.0), (tool, friction["tool_puck"])):
+    for body, slides in (
+        (plane, friction["puck_table"]),
+        (puck, 1.0),
+        (tool, friction["tool_puck"]),
+    ):
         pybullet.changeDynamics(body, -1, lateralFriction=slides, restitution=0.0)
         pybullet.changeDynamics(body, -1, linearDamping=0.0, angularDamping=0.0)
     gone = [INCH * travel for travel in travels(table, STEP)]
@@ -56,12 +60,11 @@ def begin(table: dict[str, Any]) -> PushAll:
         dx, dy = push["direction"]
         pybullet.resetBasePositionAndOrientation(puck, (x, y, half), UPRIGHT)
         pybullet.resetBaseVelocity(puck, STILL, STILL)
-        for before, after, speed in zip([0.0, *gone], gone, speeds, strict=False):
+        for before, speed in zip([0.0, *gone], speeds, strict=False):
             at = (u + dx * before, v + dy * before, 0.0)
             pybullet.resetBasePositionAndOrientation(tool, at, UPRIGHT)
             pybullet.resetBaseVelocity(tool, (dx * speed, dy * speed, 0.0), STILL)
             pybullet.stepSimulation()
-            del after
         pybullet.resetBaseVelocity(tool, STILL, STILL)
         for _ in range(SETTLE):
             pybullet.stepSimulation()
