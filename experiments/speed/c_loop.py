@@ -1,4 +1,4 @@
-"""The loop in C beside ours: `loop.c`, built when it is wanted and called with pymunk's own library."""
+"""The loop in C beside ours: `loop.c`, built when wanted and called with pymunk's own library."""
 
 import ctypes
 import math
@@ -6,9 +6,9 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
+from importlib import import_module
 from pathlib import Path
 
-import pymunk._chipmunk
 from workload import OUTLINES, SETTINGS, Push
 
 from affcli.core.geometry import Point, Pose
@@ -68,8 +68,8 @@ class Prepared:
             )
             rows.append((*push.puck, *start, *push.direction, len(stretches), len(motion)))
             stretches += motion
-        self.pushes = (_Push * len(rows))(*rows)
-        self.stretches = (_Stretch * len(stretches))(*stretches)
+        self.pushes = (_Push * len(rows))(*(_Push(*row) for row in rows))
+        self.stretches = (_Stretch * len(stretches))(*(_Stretch(*one) for one in stretches))
         self.ends = (_Pose * len(rows))()
 
     @property
@@ -90,7 +90,7 @@ class LoopInC:
 
     def __init__(self, folder: Path) -> None:
         # The engine's functions must be there, and for all to see, before those who call them.
-        engine = ctypes.CDLL(pymunk._chipmunk.__file__, ctypes.RTLD_GLOBAL)
+        engine = ctypes.CDLL(import_module("pymunk._chipmunk").__file__, ctypes.RTLD_GLOBAL)
         if not hasattr(engine, "cpSpaceStep"):
             raise CannotBuildError("pymunk's library does not show its functions")
         self._library = ctypes.CDLL(str(_build(folder)))

@@ -1,16 +1,20 @@
 """Medians of interleaved rounds, bars, and commands as whole processes."""
 
-import os
+import json
 import statistics
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 ROUNDS = 8
+LAUNCHER = Path(__file__).with_name("launcher.py")
 AFFCLI = Path(sys.executable).with_name("affcli")
+
+P = ParamSpec("P")
+R = TypeVar("R")
 
 
 class Scale(NamedTuple):
@@ -38,11 +42,11 @@ class Took(NamedTuple):
     cpu: float
 
 
-def took(work: Callable[[], object]) -> Took:
-    """Return how long `work` takes in this process."""
+def took(work: Callable[P, R], *args: P.args, **named: P.kwargs) -> tuple[Took, R]:
+    """Return how long `work` takes in this process with these arguments, and what it returns."""
     cpu, wall = time.process_time(), time.perf_counter()
-    work()
-    return Took(time.perf_counter() - wall, time.process_time() - cpu)
+    result = work(*args, **named)
+    return Took(time.perf_counter() - wall, time.process_time() - cpu), result
 
 
 class Ratios(NamedTuple):
@@ -86,14 +90,12 @@ class Ended(NamedTuple):
     Args:
         wall: seconds.
         cpu: seconds of the processor, those of its own children too.
-        peak: memory of the largest process (bytes).
-        out: what it wrote to stdout.
+        peak: memory of its largest process (bytes).
     """
 
     wall: float
     cpu: float
     peak: int
-    out: str
 
 
 def command(*words: str | Path) -> Ended:
@@ -102,20 +104,8 @@ def command(*words: str | Path) -> Ended:
     Raises:
         RuntimeError: it failed; with the last line it wrote.
     """
-    start = time.perf_counter()
-    with subprocess.Popen(
-        [str(word) for word in words],
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-    ) as process:
-        out = process.stdout.read() if process.stdout is not None else ""
-        _, status, usage = os.wait4(process.pid, 0)
-        wall = time.perf_counter() - start
-        process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode:
-        last = out.strip().splitlines()[-1:] or ["no word"]
-        raise RuntimeError(f"{words[0]} ended with {process.returncode}: {last[0]}")
-    unit = 1 if sys.platform == "darwin" else 1024
-    return Ended(wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * unit, out)
+    given = [sys.executable, "-S", "-E", str(LAUNCHER), *map(str, words)]
+    went = json.loads(subprocess.run(given, capture_output=True, check=True).stdout)
+    if went["code"]:
+        raise RuntimeError(f"{words[0]} ended with {went['code']}: {went['last']}")
+    return Ended(went["wall"], went["cpu"], went["peak"])

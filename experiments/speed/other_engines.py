@@ -1,4 +1,4 @@
-"""Many pushes of ours against the same pushes by other engines, each in an environment of its own."""
+"""Our pushes against the same pushes by other engines, each in an environment of its own."""
 
 import hashlib
 import json
@@ -15,8 +15,6 @@ from typing import Any, NamedTuple
 from measuring import ROUNDS, Scale, Took, bar, ratios, took, verdict
 from pushing import push_many
 from workload import DISTANCE, OUTLINES, SETTINGS, Push, touching, workload
-
-from affcli.core.geometry import Pose
 
 PEERS = Path(__file__).with_name("peers")
 ENVIRONMENTS = Path(__file__).parents[2] / ".venv" / "peers"
@@ -85,8 +83,8 @@ def _against(peer: Peer, pushes: Sequence[Push], rounds: int) -> dict[str, Any]:
         ask(process, peer, [_as_json(push) for push in pushes[:8]])
         for i in range(rounds):
             block = pushes[i * size : (i + 1) * size]
-            ends: list[Pose] = []
-            ours.append(took(lambda b=block, e=ends: e.extend(push_many(b))))
+            time, ends = took(push_many, block)
+            ours.append(time)
             answer = ask(process, peer, [_as_json(push) for push in block])
             theirs.append(Took(answer["seconds"], answer["cpu_seconds"]))
             moved.append(answer["moved"])
@@ -100,7 +98,8 @@ def _against(peer: Peer, pushes: Sequence[Push], rounds: int) -> dict[str, Any]:
     wall = ratios([t.wall for t in theirs], [t.wall for t in ours])
     cpu = ratios([t.cpu for t in theirs], [t.cpu for t in ours])
     held = {"bar": None} if peer.least is None else bar(cpu.median, least=peer.least)
-    near = f", ends {statistics.median(apart):.2f} in from ours in the median"
+    middle, most = statistics.median(apart), sorted(apart)[len(apart) * 9 // 10]
+    near = f", ends {middle:.2f} in from ours in the median, 90 % within {most:.2f}"
     each = 1000.0 * statistics.median(t.cpu for t in theirs) / size
     mine = 1000.0 * statistics.median(t.cpu for t in ours) / size
     print(
@@ -119,7 +118,7 @@ def _against(peer: Peer, pushes: Sequence[Push], rounds: int) -> dict[str, Any]:
         "ms_a_push": {"ours": mine, "theirs": each},
         "pushes": size * rounds,
         "moved_share": share,
-        **({"median_apart_in": statistics.median(apart)} if peer.same_table else {}),
+        **({"apart_in": {"median": middle, "90 %": most}} if peer.same_table else {}),
     }
 
 
@@ -192,10 +191,12 @@ def environment(peer: Peer) -> Path:
     if python.exists() and stamp.exists() and stamp.read_text(encoding="utf-8") == wanted:
         return python
     print(f"peers: installing {peer.packages} ...", file=sys.stderr)
-    _run(peer, [sys.executable, "-m", "venv", "--clear", str(folder)])
+    # Our pip does it: without one of its own an environment is there in a moment.
+    _run(peer, [sys.executable, "-m", "venv", "--clear", "--without-pip", str(folder)])
+    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "--python", str(python)]
     # Binaries only: what has none for this Python would take a compiler and an hour.
-    options = ["--disable-pip-version-check", "--only-binary", ":all:", "--retries", "1"]
-    _run(peer, [str(python), "-m", "pip", "install", "-q", *options, "-r", str(packages)])
+    options = ["-q", "--only-binary", ":all:", "--retries", "1", "-r", str(packages)]
+    _run(peer, [*pip, "install", *options])
     stamp.write_text(wanted, encoding="utf-8")
     return python
 

@@ -1,5 +1,6 @@
 """Pushes: ours against the plain loop, and against the same loop in C."""
 
+import math
 import statistics
 import tempfile
 from collections.abc import Sequence
@@ -7,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from c_loop import CannotBuildError, LoopInC, Prepared
-from measuring import ROUNDS, Ratios, Scale, bar, ratios, took, verdict
+from measuring import ROUNDS, Scale, Took, bar, ratios, took, verdict
 from workload import Push, simulator, touching, workload
 
 from affcli.core.geometry import Pose
@@ -20,6 +21,11 @@ def push_many(pushes: Sequence[Push]) -> list[Pose]:
 
     One world, one push after the other: it starts before contact and stops at rest.
     """
+    return one_by_one(pushes)
+
+
+def one_by_one(pushes: Sequence[Push]) -> list[Pose]:
+    """Return where the puck comes to rest in each push, done as the robot does them."""
     return [WORLD.push(*push) for push in pushes]
 
 
@@ -31,29 +37,31 @@ def bench_pushes(scale: Scale) -> dict[str, Any]:
     touched, equal, apart = 0, True, [0.0]
     for i in range(scale.of(ROUNDS, 1)):
         block = pushes[i * size : (i + 1) * size]
-        ends: dict[str, list[Pose]] = {}
-        many.append(took(lambda b=block, e=ends: e.update(many=push_many(b))).wall)
-        one.append(took(lambda b=block, e=ends: e.update(one=[WORLD.push(*p) for p in b])).wall)
-        plain.append(took(lambda b=block, e=ends: e.update(plain=plainly(b))).wall)
-        equal &= ends["one"] == ends["plain"]
-        pairs = list(zip(ends["many"], ends["plain"], block, strict=True))
+        quick, ends = took(push_many, block)
+        exact, ends_one = took(one_by_one, block)
+        slow, ends_plain = took(plainly, block)
+        many.append(quick.wall)
+        one.append(exact.wall)
+        plain.append(slow.wall)
+        equal &= ends_one == ends_plain
+        pairs = list(zip(ends, ends_plain, block, strict=True))
         apart += [distance(mine, theirs) for mine, theirs, push in pairs if theirs != push.puck]
         touched += sum(theirs != push.puck for _, theirs, push in pairs)
     share = touched / (size * len(plain))
-    fast, exact = ratios(plain, many), ratios(plain, one)
-    bars = bar(fast.median, least=16.0), bar(exact.median, least=8.0)
+    fast, same = ratios(plain, many), ratios(plain, one)
+    bars = bar(fast.median, least=16.0), bar(same.median, least=8.0)
     print(
         f"pushes: {fast} a loop that builds a Space for each and simulates all of it "
         f"({size * len(plain)} behaviors, {100 * share:.1f} % touch; ends at most {max(apart):.2g} "
         f"in apart; {verdict(bars[0])})"
     )
     print(
-        f"pushes: one by one, {'bit-identical' if equal else 'NOT IDENTICAL'}: {exact} "
+        f"pushes: one by one, {'bit-identical' if equal else 'NOT IDENTICAL'}: {same} "
         f"({verdict(bars[1])})"
     )
     return {
         "many": {**fast.json(), **bars[0], "most_apart_in": max(apart)},
-        "one_by_one": {**exact.json(), **bars[1], "identical": equal},
+        "one_by_one": {**same.json(), **bars[1], "identical": equal},
         "touch_share": share,
     }
 
@@ -65,7 +73,7 @@ def plainly(pushes: Sequence[Push]) -> list[Pose]:
 
 def distance(a: Pose, b: Pose) -> float:
     """Return how far apart two poses are (in)."""
-    return float(((a.x - b.x) ** 2 + (a.y - b.y) ** 2) ** 0.5)
+    return math.dist(a.point, b.point)
 
 
 def bench_loop(scale: Scale) -> dict[str, Any]:
@@ -84,20 +92,23 @@ def _against_c(loop: LoopInC, pushes: Sequence[Push], scale: Scale) -> dict[str,
     rounds = scale.of(ROUNDS, 1)
     size = len(pushes) // rounds
     ours, paced, short, paced_steps, short_steps = [], [], [], 0, 0
-    paced_apart, short_apart, identical = [], [], True
+    paced_apart: list[float] = []
+    short_apart: list[float] = []
+    identical = True
     for i in range(rounds):
         block = pushes[i * size : (i + 1) * size]
         prepared = Prepared(block)
-        mine: list[Pose] = []
-        done: list[int] = []
-        ours.append(took(lambda b=block, m=mine: m.extend(WORLD.push(*p) for p in b)))
-        paced.append(took(lambda p=prepared, d=done: d.append(loop.push(p, paced=True))))
-        ends = prepared.poses
-        identical &= ends == mine
-        paced_apart += map(distance, ends, mine)
-        short.append(took(lambda p=prepared, d=done: d.append(loop.push(p, paced=False))))
+        time, mine = took(one_by_one, block)
+        ours.append(time)
+        time, steps = took(loop.push, prepared, paced=True)
+        paced.append(time)
+        paced_steps += steps
+        identical &= prepared.poses == mine
+        paced_apart += map(distance, prepared.poses, mine)
+        time, steps = took(loop.push, prepared, paced=False)
+        short.append(time)
+        short_steps += steps
         short_apart += map(distance, prepared.poses, mine)
-        paced_steps, short_steps = paced_steps + done[0], short_steps + done[1]
     if max(paced_apart) > 1e-9:
         raise AssertionError(f"the loop in C ends {max(paced_apart)} in away from ours")
     pushed = size * rounds
@@ -109,23 +120,22 @@ def _against_c(loop: LoopInC, pushes: Sequence[Push], scale: Scale) -> dict[str,
         ("short_steps", "of short steps only", plain, short_steps, short_apart),
     ):
         held = bar(one.median, least=0.35)
-        equal = "to the bit" if apart is paced_apart and identical else f"{max(apart):.2g} in apart"
+        equal = (
+            "equal to the bit"
+            if apart is paced_apart and identical
+            else f"{max(apart):.2g} in apart"
+        )
         print(
             f"loop: touched pushes a second, one world: {one} the loop in C {words} "
-            f"({pushed} pushes of 5 in, {all_steps / pushed:.0f} steps each, ends equal "
-            f"{equal}; {verdict(held)})"
+            f"({pushed} pushes of 5 in, {all_steps / pushed:.0f} steps each, ends {equal}; "
+            f"{verdict(held)})"
         )
         found[key] = {**one.json(), **held, "steps_a_push": all_steps / pushed}
-    each = {
-        name: ms(times, size) for name, times in (("ours", ours), ("c", paced), ("c_short", short))
-    }
+    each = {"ours": ms(ours, size), "c": ms(paced, size), "c_short": ms(short, size)}
     print("loop: ms a push: " + ", ".join(f"{name} {value:.3f}" for name, value in each.items()))
     return {**found, "ms_a_push": each, "identical": identical}
 
 
-def ms(times: Sequence[Any], size: int) -> float:
+def ms(times: Sequence[Took], size: int) -> float:
     """Return the median milliseconds of the processor for each of `size` pushes."""
     return 1000.0 * statistics.median(one.cpu for one in times) / size
-
-
-__all__ = ["Ratios", "bench_loop", "bench_pushes", "push_many"]

@@ -78,7 +78,8 @@ def against_sql(
         connection.execute(sa.insert(kept), filled)
         c = kept.c
         apart = [(c[f"c{i}"] - v) * (c[f"c{i}"] - v) for i, v in enumerate(seen.colors)]
-        close = (sum(apart[:3]) <= COLOR_TOLERANCE**2, sum(apart[3:]) <= COLOR_TOLERANCE**2)
+        puck, tool = apart[0] + apart[1] + apart[2], apart[3] + apart[4] + apart[5]
+        close = (puck <= COLOR_TOLERANCE**2, tool <= COLOR_TOLERANCE**2)
         wanted = sa.select(sa.literal_column("rowid"), c.x, c.y, c.offset_x, c.offset_y).where(
             *close, 2 * c.good > c.used
         )

@@ -33,7 +33,7 @@ def bench_hours(scale: Scale) -> dict[str, Any]:
             with open_store(path, create=True, write=True) as store:
                 for tool in TOOL_PARTS:
                     spec = LearningSpec(tool, seed, 0, hours, behaviors, text)
-                    times.append(took(lambda s=store, one=spec: learn(s, one, lambda: NOW)))
+                    times.append(took(learn, store, spec, lambda: NOW)[0])
                     by_tool[tool] = by_tool.get(tool, 0.0) + times[-1].wall
                 lived += sum(run.robot_seconds for run in store.learning_runs()) / 3600.0
                 done += sum(run.behaviors for run in store.learning_runs())
@@ -110,7 +110,7 @@ def store_all(store: Store, spec: LearningSpec, steps: Sequence[LearningStep], s
 def bench_growth(scale: Scale) -> dict[str, Any]:
     """Time a behavior from a thousand behaviors on; a million with --full."""
     text = Settings().to_json()
-    counts = (20, 40) if scale.tiny else (1_000, 10_000, 100_000)
+    counts: tuple[int, ...] = (20, 40) if scale.tiny else (1_000, 10_000, 100_000)
     counts += (1_000_000,) if scale.full and not scale.tiny else ()
     each: dict[int, float] = {}
     with tempfile.TemporaryDirectory() as folder:
@@ -122,7 +122,7 @@ def bench_growth(scale: Scale) -> dict[str, Any]:
             with open_store(path, create=True, write=True) as store:
                 for seed in range(repeats):
                     spec = LearningSpec("t-hook", seed, 0, None, count, text)
-                    cpu += took(lambda s=store, one=spec: learn(s, one, lambda: NOW)).cpu
+                    cpu += took(learn, store, spec, lambda: NOW)[0].cpu
             each[count] = 1e6 * cpu / (repeats * count)
     growth = each[counts[-1]] / each[counts[0]]
     held = bar(growth, most=1.2)

@@ -38,8 +38,8 @@ def bench_learn(scale: Scale) -> dict[str, Any]:
                 "new hour": (*learn, "--seed", str(i), "--db", there),
                 "new database": (*learn, "--db", f"{folder}/{i}.db"),
             }
-            for name, words in commands.items():
-                ended = command(*words)
+            for name, given in commands.items():
+                ended = command(*given)
                 wall.setdefault(name, []).append(ended.wall)
                 if name == "new database":
                     memory = max(memory, ended.peak)

@@ -2,8 +2,8 @@
 
 The world is gym-pusht's own: by that scale the T is 6 in long, its bars 1.5 in wide and the agent
 1.5 in across. Its table has no friction but damps all speed away at once, so the T stops when it is
-let go. The agent is put just before the middle of the crossbar and pushes the T along its stem, 5 in
-at 5 in/s: nothing turns, nothing slips off.
+let go. The agent is put just before the middle of the crossbar and pushes the T along its stem, for
+5 in at 5 in/s: nothing turns, nothing slips off.
 
 With --space: the physics alone. Its Space, in its steps of 10 ms, the agent given the speed it is
 to have. Without: the environment as it is used, `step` with the place to go to ten times a second;

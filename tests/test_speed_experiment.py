@@ -1,0 +1,79 @@
+"""The scripts behind `make bench`: that they run. How fast anything is, no test asks."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.cli.program import PATIENCE, ROOT
+
+SPEED = ROOT / "experiments" / "speed"
+QUICK = ("pushes", "loop", "query", "storing", "hours", "growth")
+
+
+def bench(
+    target: Path, *names: str, speed: Path = SPEED, **environment: str
+) -> tuple[dict[str, Any], str]:
+    """Run some benchmarks at their smallest; return the figures and what was printed."""
+    ended = subprocess.run(
+        [sys.executable, speed / "bench.py", "--tiny", "--json", target, *names],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        check=False,
+        env=os.environ | environment,
+    )
+    assert ended.returncode == 0, ended.stderr
+    return json.loads(target.read_text(encoding="utf-8")), ended.stdout
+
+
+def test_the_quick_benchmarks_run_and_write_what_they_print(tmp_path: Path) -> None:
+    figures, out = bench(tmp_path / "figures.json", *QUICK)
+    assert set(figures) == {"machine", *QUICK}
+    assert {line.partition(":")[0] for line in out.splitlines()} == set(QUICK)
+
+
+def test_pushes_one_by_one_and_in_c_end_where_the_plain_loop_ends(tmp_path: Path) -> None:
+    figures, out = bench(tmp_path / "figures.json", "pushes", "loop")
+    assert figures["pushes"]["one_by_one"]["identical"]
+    if shutil.which("cc") or shutil.which("gcc"):
+        assert figures["loop"]["most_apart_in"] <= 1e-9
+    else:
+        assert "no C compiler" in out
+
+
+def test_without_a_compiler_the_loop_in_c_is_said_to_be_missing(tmp_path: Path) -> None:
+    figures, out = bench(tmp_path / "figures.json", "loop", PATH=str(tmp_path))
+    assert figures["loop"]["ratio"] is None
+    assert out == f"loop: not measured: {figures['loop']['reason']}\n"
+
+
+@pytest.mark.torture
+def test_engines_that_cannot_be_installed_are_named_and_the_rest_goes_on(tmp_path: Path) -> None:
+    copied = tmp_path / "experiments" / "speed"
+    shutil.copytree(SPEED, copied)
+    nowhere = {"PIP_NO_INDEX": "1", "PIP_FIND_LINKS": "", "PIP_CONFIG_FILE": os.devnull}
+    figures, out = bench(tmp_path / "figures.json", "peers", "storing", speed=copied, **nowhere)
+    assert "storing: " in out
+    for name, peer in figures["peers"].items():
+        assert peer["ratio"] is None
+        assert "could not be installed" in peer["reason"]
+        assert f"peers: {name}: not measured: {peer['reason']}" in out
+
+
+def test_an_unknown_benchmark_is_refused(tmp_path: Path) -> None:
+    ended = subprocess.run(
+        [sys.executable, SPEED / "bench.py", "fastest"],
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        check=False,
+    )
+    assert ended.returncode == 2
+    assert "no such benchmark: fastest" in ended.stderr
