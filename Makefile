@@ -68,7 +68,7 @@ check: $(INSTALLED_DEV)
 reproduce: $(INSTALLED)
 	$(AFFCLI) reproduce --robots $(ROBOTS) --seed $(SEED) $(if $(WORKERS),--workers $(WORKERS)) --db reproduce.db
 
-## bench         measure the speed
+## bench         measure the speed, also beside other engines, which it installs apart
 bench: $(INSTALLED)
 	$(VENV)/bin/python experiments/speed/bench.py
 
