@@ -9,6 +9,7 @@ from typing import Any
 
 from c_loop import CannotBuildError, LoopInC, Prepared
 from measuring import ROUNDS, Scale, Took, bar, ratios, took, verdict
+from plain import push_plainly
 from workload import Push, simulator, touching, workload
 
 from affcli.core.geometry import Pose
@@ -16,59 +17,55 @@ from affcli.core.geometry import Pose
 WORLD = simulator()
 
 
-def push_many(pushes: Sequence[Push]) -> list[Pose]:
-    """Return where the puck comes to rest in each of many pushes, the fastest way there is.
-
-    One world, one push after the other: it starts before contact and stops at rest.
-    """
-    return one_by_one(pushes)
-
-
-def one_by_one(pushes: Sequence[Push]) -> list[Pose]:
+def ours(pushes: Sequence[Push]) -> list[Pose]:
     """Return where the puck comes to rest in each push, done as the robot does them."""
     return [WORLD.push(*push) for push in pushes]
 
 
-def bench_pushes(scale: Scale) -> dict[str, Any]:
-    """Our pushes against a loop that builds a Space for each and simulates every step of it."""
-    pushes = workload()
-    size = scale.of(len(pushes) // ROUNDS, 16)
-    many, one, plain = [], [], []
-    touched, equal, apart = 0, True, [0.0]
-    for i in range(scale.of(ROUNDS, 1)):
-        block = pushes[i * size : (i + 1) * size]
-        quick, ends = took(push_many, block)
-        exact, ends_one = took(one_by_one, block)
-        slow, ends_plain = took(plainly, block)
-        many.append(quick.wall)
-        one.append(exact.wall)
-        plain.append(slow.wall)
-        equal &= ends_one == ends_plain
-        pairs = list(zip(ends, ends_plain, block, strict=True))
-        apart += [distance(mine, theirs) for mine, theirs, push in pairs if theirs != push.puck]
-        touched += sum(theirs != push.puck for _, theirs, push in pairs)
-    share = touched / (size * len(plain))
-    fast, same = ratios(plain, many), ratios(plain, one)
-    bars = bar(fast.median, least=16.0), bar(same.median, least=8.0)
-    print(
-        f"pushes: {fast} a loop that builds a Space for each and simulates all of it "
-        f"({size * len(plain)} behaviors, {100 * share:.1f} % touch; ends at most {max(apart):.2g} "
-        f"in apart; {verdict(bars[0])})"
-    )
-    print(
-        f"pushes: one by one, {'bit-identical' if equal else 'NOT IDENTICAL'}: {same} "
-        f"({verdict(bars[1])})"
-    )
-    return {
-        "many": {**fast.json(), **bars[0], "most_apart_in": max(apart)},
-        "one_by_one": {**same.json(), **bars[1], "identical": equal},
-        "touch_share": share,
-    }
+def whole(pushes: Sequence[Push]) -> list[Pose]:
+    """Return where it comes to rest when every push has its own Space and no step is left out."""
+    return [simulator().push(*push, whole=True) for push in pushes]
 
 
 def plainly(pushes: Sequence[Push]) -> list[Pose]:
-    """Return where the puck comes to rest when every push has its own Space and is done whole."""
-    return [simulator().push(*push, whole=True) for push in pushes]
+    """Return where it comes to rest in a loop as one would write it in pymunk."""
+    return [push_plainly(push) for push in pushes]
+
+
+def bench_pushes(scale: Scale) -> dict[str, Any]:
+    """Our pushes against a plain loop in pymunk, and against all of the steps that we leave out."""
+    pushes = workload()
+    size = scale.of(len(pushes) // ROUNDS, 16)
+    times: dict[str, list[float]] = {}
+    touched, equal, apart = 0, True, [0.0]
+    for i in range(scale.of(ROUNDS, 1)):
+        block = pushes[i * size : (i + 1) * size]
+        ends = {}
+        for work in (ours, plainly, whole):
+            time, ends[work] = took(work, block)
+            times.setdefault(work.__name__, []).append(time.cpu)
+        equal &= ends[ours] == ends[whole]
+        for mine, theirs, push in zip(ends[ours], ends[plainly], block, strict=True):
+            if theirs != push.puck or mine != push.puck:
+                touched += 1
+                apart.append(distance(mine, theirs))
+    share = touched / (size * len(times["ours"]))
+    plain, same = ratios(times["plainly"], times["ours"]), ratios(times["whole"], times["ours"])
+    bars = bar(plain.median, least=16.0), bar(same.median, least=8.0)
+    print(
+        f"pushes: {plain} a plain pymunk loop that builds a Space for each and simulates all of it "
+        f"({size * len(times['ours'])} behaviors, {100 * share:.1f} % touch; ends at most "
+        f"{max(apart):.2g} in apart; {verdict(bars[0])})"
+    )
+    print(
+        f"pushes: {same} the same steps with none left out and a Space for each, "
+        f"{'bit-identical' if equal else 'NOT IDENTICAL'} ({verdict(bars[1])})"
+    )
+    return {
+        "plain": {**plain.json(), **bars[0], "most_apart_in": max(apart)},
+        "whole": {**same.json(), **bars[1], "identical": equal},
+        "touch_share": share,
+    }
 
 
 def distance(a: Pose, b: Pose) -> float:
@@ -91,15 +88,15 @@ def _against_c(loop: LoopInC, pushes: Sequence[Push], scale: Scale) -> dict[str,
     """Measure, and compare where the pucks came to rest."""
     rounds = scale.of(ROUNDS, 1)
     size = len(pushes) // rounds
-    ours, paced, short, paced_steps, short_steps = [], [], [], 0, 0
+    own, paced, short, paced_steps, short_steps = [], [], [], 0, 0
     paced_apart: list[float] = []
     short_apart: list[float] = []
     identical = True
     for i in range(rounds):
         block = pushes[i * size : (i + 1) * size]
         prepared = Prepared(block)
-        time, mine = took(one_by_one, block)
-        ours.append(time)
+        time, mine = took(ours, block)
+        own.append(time)
         time, steps = took(loop.push, prepared, paced=True)
         paced.append(time)
         paced_steps += steps
@@ -112,8 +109,8 @@ def _against_c(loop: LoopInC, pushes: Sequence[Push], scale: Scale) -> dict[str,
     if max(paced_apart) > 1e-9:
         raise AssertionError(f"the loop in C ends {max(paced_apart)} in away from ours")
     pushed = size * rounds
-    same = ratios([t.cpu for t in paced], [t.cpu for t in ours])
-    plain = ratios([t.cpu for t in short], [t.cpu for t in ours])
+    same = ratios([t.cpu for t in paced], [t.cpu for t in own])
+    plain = ratios([t.cpu for t in short], [t.cpu for t in own])
     found: dict[str, Any] = {"pushes": pushed, "most_apart_in": max(paced_apart)}
     for key, words, one, all_steps, apart in (
         ("same_steps", "of the same steps", same, paced_steps, paced_apart),
@@ -131,7 +128,7 @@ def _against_c(loop: LoopInC, pushes: Sequence[Push], scale: Scale) -> dict[str,
             f"{verdict(held)})"
         )
         found[key] = {**one.json(), **held, "steps_a_push": all_steps / pushed}
-    each = {"ours": ms(ours, size), "c": ms(paced, size), "c_short": ms(short, size)}
+    each = {"ours": ms(own, size), "c": ms(paced, size), "c_short": ms(short, size)}
     print("loop: ms a push: " + ", ".join(f"{name} {value:.3f}" for name, value in each.items()))
     return {**found, "ms_a_push": each, "identical": identical}
 
