@@ -43,6 +43,8 @@ class AffordanceTable:
         )
         self.probable = 2 * self.times_successful > self.times_used
         self._class_of, self._class_colors = _color_classes(self._rows)
+        self._all = np.arange(len(self._rows))
+        self._all.flags.writeable = False
 
     def __len__(self) -> int:
         return len(self._rows)
@@ -68,10 +70,10 @@ class AffordanceTable:
         return twin
 
     def with_colors_of(self, seen: Observation) -> Rows:
-        """Return the rows whose object and tool colours are consistent with `seen`."""
+        """Return the rows whose object and tool colours are consistent with `seen`, to be read."""
         fitting = np.array([_consistent(c, seen.colors) for c in self._class_colors], dtype=bool)
         if fitting.all():
-            return np.arange(len(self))
+            return self._all
         return np.flatnonzero(fitting[self._class_of])
 
     def count_use(self, position: int, *, success: bool) -> None:

@@ -22,7 +22,7 @@ BLOCK = 32_768
 """So many rows are computed at a time: a million at once would wait for the memory."""
 ALL = slice(None)
 
-LONG, SAMPLE, SPARSE = 8_192, 1_024, 128
+LONG, SAMPLE, SPARSE = 8_192, 2_048, 128
 """From how many values on a sample is drawn; at least how large it is; at most one of how many."""
 
 Value = TypeVar("Value", np.float64, np.bool_)
@@ -160,8 +160,8 @@ def _probably_small(values: NDArray[np.float64], k: int) -> tuple[float, Rows]:
     if len(values) >= LONG:
         sample = np.sort(values[:: min(len(values) // SAMPLE, SPARSE)])
         at = k * len(sample) // len(values)
-        # Five standard deviations of the k-th value's place in a random sample, at their widest.
-        margin = math.ceil(2.5 * math.sqrt(len(sample)))
+        # Three standard deviations of the k-th value's place in a random sample, at their widest.
+        margin = math.ceil(1.5 * math.sqrt(len(sample)))
         if at + margin < len(sample):
             found = np.flatnonzero(values <= sample[at + margin])
             if len(found) >= k:  # else the sample misled
