@@ -10,8 +10,8 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
-from contextlib import closing
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -150,10 +150,14 @@ def executed(*args: Arg, **env: str) -> Ended:
         return ending(process)
 
 
-def started(*args: Arg, **env: str) -> subprocess.Popen[str]:
-    """Start the program beside the test, as a shell does: in a process group of its own."""
+@contextmanager
+def started(*args: Arg, **env: str) -> Iterator[subprocess.Popen[str]]:
+    """Run the program beside the test, as a shell does: in a process group of its own.
+
+    At the end of the block it is killed with all that it started, should it still run.
+    """
     pipe = subprocess.PIPE
-    return subprocess.Popen(
+    with subprocess.Popen(
         [*PROGRAM, *args],
         env=environment(**env),
         stdin=subprocess.DEVNULL,
@@ -161,7 +165,12 @@ def started(*args: Arg, **env: str) -> subprocess.Popen[str]:
         stderr=pipe,
         text=True,
         start_new_session=True,
-    )
+    ) as process:
+        try:
+            yield process
+        finally:
+            with suppress(ProcessLookupError):  # all of them have ended
+                os.killpg(process.pid, signal.SIGKILL)
 
 
 def ending(process: subprocess.Popen[str], timeout: float = PATIENCE) -> Ended:

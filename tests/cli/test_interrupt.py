@@ -72,9 +72,9 @@ def test_learning_goes_on_after_whatever_stopped_it(tmp_path: Path) -> None:
         (signal.SIGTERM, 143, GOES_ON),
         (signal.SIGKILL, -signal.SIGKILL, ""),
     ):
-        process = started(*LONG, "--db", database)
-        wait_until(more_than(kept, partial(saved, database)), process)
-        assert stopped(process, signum) == Ended(code, "", says)
+        with started(*LONG, "--db", database) as process:
+            wait_until(more_than(kept, partial(saved, database)), process)
+            assert stopped(process, signum) == Ended(code, "", says)
         assert kept < saved(database) < 7000
         kept = saved(database)
         assert rows(database, "SELECT count(*), max(step) FROM behavior") == [(kept, kept)]
@@ -94,10 +94,10 @@ def test_resume_alone_goes_on_with_every_interrupted_run(tmp_path: Path) -> None
     config.write_text("[sensor]\nposition_noise = 0.02\n")
     runs = (LONG, (*LONG, "--seed", "5", "--config", config))
     for number, command in enumerate(runs, 1):
-        process = started(*command, "--db", database)
-        wait_until(more_than(number - 1, partial(begun, database)), process)
-        process.kill()
-        ending(process)
+        with started(*command, "--db", database) as process:
+            wait_until(more_than(number - 1, partial(begun, database)), process)
+            process.kill()
+            ending(process)
     ended = done("learn", "--resume", "--db", database)
     assert [line.split(":")[0] for line in ended.err.splitlines()] == [
         "learned stick (run 1, seed 0)",
@@ -141,10 +141,10 @@ def test_stopped_while_it_starts_it_is_one_line_too(
 ) -> None:
     """From the moment on in which affcli itself runs; before, it is Python that is stopped."""
     for delay in (0.0, 0.1, 0.2):
-        process = started(*LONG, "--db", tmp_path / "my.db")
-        wait_until(partial(handles_signals, process.pid), process)
-        time.sleep(delay)
-        assert stopped(process, signum) == Ended(code, "", GOES_ON)
+        with started(*LONG, "--db", tmp_path / "my.db") as process:
+            wait_until(partial(handles_signals, process.pid), process)
+            time.sleep(delay)
+            assert stopped(process, signum) == Ended(code, "", GOES_ON)
 
 
 def handles_signals(pid: int) -> bool:
@@ -163,16 +163,16 @@ def test_a_stopped_reproduction_goes_on(leisurely: Path, tmp_path: Path, reprodu
     database = tmp_path / "my.db"
     command = ("reproduce", "--robots", "2", "--config", leisurely, "--db", database)
 
-    process = started(*command, "--workers", "2")
-    wait_until(more_than(0, partial(robots, database)), process)
-    assert stopped(process, signal.SIGINT) == Ended(130, "", GOES_ON)
+    with started(*command, "--workers", "2") as process:
+        wait_until(more_than(0, partial(robots, database)), process)
+        assert stopped(process, signal.SIGINT) == Ended(130, "", GOES_ON)
     kept = robots(database)
     assert 1 <= kept <= 2
-    process = started(*command, "--workers", "1")
-    if kept < 2:
-        wait_until(more_than(kept, partial(robots, database)), process)
-    process.kill()
-    ending(process)
+    with started(*command, "--workers", "1") as process:
+        if kept < 2:
+            wait_until(more_than(kept, partial(robots, database)), process)
+        process.kill()
+        ending(process)
     assert rows(database, "PRAGMA integrity_check") == [("ok",)]
     if rows(database, "SELECT status FROM session") == [("running",)]:
         done("reproduce", "--resume", "--workers", "1", "--db", database)
@@ -184,42 +184,47 @@ def test_a_stopped_reproduction_goes_on(leisurely: Path, tmp_path: Path, reprodu
 def test_workers_end_with_their_parent(signum: signal.Signals, tmp_path: Path) -> None:
     """Lives of full length take seconds; nobody waits for those begun."""
     database = tmp_path / "my.db"
-    process = started("reproduce", "--robots", "9", "--workers", "2", "--db", database)
-    wait_until(more_than(0, partial(robots, database)), process)
-    assert stopped(process, signum) == Ended(128 + signum, "", GOES_ON)
+    with started("reproduce", "--robots", "9", "--workers", "2", "--db", database) as process:
+        wait_until(more_than(0, partial(robots, database)), process)
+        assert stopped(process, signum) == Ended(128 + signum, "", GOES_ON)
 
 
 @pytest.mark.parametrize("delay", [0.0, 0.3, 0.6])
 def test_ctrl_c_reaches_workers_that_are_just_starting(delay: float, tmp_path: Path) -> None:
     """A terminal sends it to the whole group; the parent alone has something to say."""
-    process = started("reproduce", "--robots", "9", "--workers", "2", "--db", tmp_path / "my.db")
-    wait_until(partial(handles_signals, process.pid), process)
-    children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
-    if children.exists():
-        wait_until(lambda: len(children.read_text().split()) > 1, process)
-    time.sleep(delay)
-    os.killpg(process.pid, signal.SIGINT)
-    assert ending(process, SOON) == Ended(130, "", GOES_ON)
+    command = ("reproduce", "--robots", "9", "--workers", "2", "--db", tmp_path / "my.db")
+    with started(*command) as process:
+        wait_until(partial(handles_signals, process.pid), process)
+        wait_until(lambda: len(children_of(process.pid)) > 1, process)
+        time.sleep(delay)
+        os.killpg(process.pid, signal.SIGINT)
+        assert ending(process, SOON) == Ended(130, "", GOES_ON)
+
+
+def children_of(pid: int, doing: str = "") -> list[int]:
+    """Return the processes that a process began, those with `doing` in their command line."""
+    command = ["/bin/ps", "-A", "-ww", "-o", "pid=,ppid=,args="]
+    listed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    split = (line.split(maxsplit=2) for line in listed.splitlines())
+    return [int(child) for child, parent, *args in split if int(parent) == pid and doing in args[0]]
 
 
 def test_a_worker_that_died_is_named(tmp_path: Path) -> None:
     """As the system kills one when memory runs out."""
     database = tmp_path / "my.db"
-    process = started("reproduce", "--robots", "9", "--workers", "2", "--db", database)
-    wait_until(more_than(0, partial(robots, database)), process)
-    command = ["/usr/bin/pgrep", "-P", str(process.pid), "-f", "spawn_main"]
-    found = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    os.kill(int(found.split()[0]), signal.SIGKILL)
-    ended = ending(process)
+    with started("reproduce", "--robots", "9", "--workers", "2", "--db", database) as process:
+        wait_until(more_than(0, partial(robots, database)), process)
+        os.kill(children_of(process.pid, "spawn_main")[0], signal.SIGKILL)
+        ended = ending(process)
     assert (ended.code, ended.out) == (1, "")
     assert "a worker process died" in one_printable_line(ended.err)
 
 
 def test_solving_keeps_the_steps_before_it_was_stopped(learned: Path) -> None:
     """Counters and steps stay together, and nothing is promised that is not so."""
-    process = started("solve", "--goal", "1", "--tool", "stick", "--db", learned)
-    wait_until(lambda: bool(rows(learned, "SELECT 1 FROM step LIMIT 1")), process)
-    ended = stopped(process, signal.SIGINT)
+    with started("solve", "--goal", "1", "--tool", "stick", "--db", learned) as process:
+        wait_until(lambda: bool(rows(learned, "SELECT 1 FROM step LIMIT 1")), process)
+        ended = stopped(process, signal.SIGINT)
     if ended.err.startswith("trials 1 to 4 saved"):
         # It was done already: what was left of it was Python's own leaving.
         assert ended.code in {0, -signal.SIGINT}

@@ -297,8 +297,8 @@ def test_a_changed_learning_run_is_exit_code_1_and_named(learned: Path) -> None:
 def test_stopped_away_from_a_terminal_it_is_one_line(
     signum: signal.Signals, code: int, learned: Path
 ) -> None:
-    process = started("replay", "--run", "1", "--db", learned)
-    wait_until(partial(handles_signals, process.pid), process)
-    time.sleep(0.5)
     says = "affcli: stopped; what was saved is kept\n"
-    assert stopped(process, signum) in {Ended(code, "", says), Ended(0, "", WHOLE_RUN)}
+    with started("replay", "--run", "1", "--db", learned) as process:
+        wait_until(partial(handles_signals, process.pid), process)
+        time.sleep(0.5)
+        assert stopped(process, signum) in {Ended(code, "", says), Ended(0, "", WHOLE_RUN)}

@@ -10,7 +10,7 @@ import sqlite3
 import subprocess
 import sys
 from collections.abc import Callable
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 
 import pytest
@@ -359,15 +359,18 @@ def _reading(process: subprocess.Popen[str], database: Path) -> Callable[[], boo
     files = Path(f"/proc/{process.pid}/fd")
     if not files.exists():
         return lambda: True
-    return lambda: any(_leads_to(entry) == str(database.resolve()) for entry in files.iterdir())
+    wanted = str(database.resolve())
+    return lambda: wanted in _open_files(files)
 
 
-def _leads_to(link: Path) -> str | None:
-    """Return what an open file of another process is; it may be closed while we look."""
-    try:
-        return str(link.readlink())
-    except FileNotFoundError:
-        return None
+def _open_files(files: Path) -> list[str]:
+    """Return the open files of another process; they, and it, may be gone while we look."""
+    found = []
+    with suppress(FileNotFoundError, ProcessLookupError):
+        for entry in files.iterdir():
+            with suppress(FileNotFoundError, ProcessLookupError):
+                found.append(str(entry.readlink()))
+    return found
 
 
 def test_the_program_as_a_whole_makes_a_page(used: Path, tmp_path: Path) -> None:

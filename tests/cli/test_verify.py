@@ -175,10 +175,10 @@ def test_a_table_can_be_verified_while_another_process_writes(learned: Path) -> 
 @pytest.mark.parametrize("_try", range(2))
 def test_killed_while_updating_counters_and_tries_are_together(learned: Path, _try: int) -> None:
     """Whenever it is killed."""
-    process = started(*verify(learned, "--update", "--rows", "5000"))
-    wait_until(lambda: tries(learned) > 7 * _try, process)
-    process.kill()
-    assert ending(process).code == -signal.SIGKILL
+    with started(*verify(learned, "--update", "--rows", "5000")) as process:
+        wait_until(lambda: tries(learned) > 7 * _try, process)
+        process.kill()
+        assert ending(process).code == -signal.SIGKILL
     assert 0 < tries(learned) < 5000
     assert rows(learned, USES) == rows(learned, TRIES)
     assert rows(learned, "SELECT verdict, finished_at FROM verification") == [(None, None)]
@@ -188,10 +188,10 @@ def test_killed_while_updating_counters_and_tries_are_together(learned: Path, _t
 
 
 def test_stopped_it_keeps_what_was_saved(learned: Path) -> None:
-    process = started(*verify(learned, "--update", "--rows", "5000"))
-    wait_until(lambda: tries(learned) > 0, process)
-    process.send_signal(signal.SIGINT)
-    ended = ending(process)
+    with started(*verify(learned, "--update", "--rows", "5000")) as process:
+        wait_until(lambda: tries(learned) > 0, process)
+        process.send_signal(signal.SIGINT)
+        ended = ending(process)
     assert (ended.code, ended.err) == (130, "affcli: stopped; what was saved is kept\n")
     assert rows(learned, USES) == rows(learned, TRIES)
     done("db", "check", "--db", learned)
