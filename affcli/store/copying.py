@@ -61,6 +61,7 @@ def copy_of(driver: sqlite3.Connection, path: Path, copy: Path, timeout: float) 
         _synced(temporary)
         temporary.chmod(0o644)
         temporary.replace(copy)
+        _synced(folder)
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -75,7 +76,7 @@ def backup_name(path: Path, revision: str) -> Path:
 
 
 def _synced(path: Path) -> None:
-    """Make sure that a file is on the disk."""
+    """Make sure that a file, or the names in a folder, are on the disk."""
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)

@@ -8,8 +8,8 @@ from affcli.store.faults import is_busy
 
 T = TypeVar("T")
 
-PATIENCE = 30.0
-"""Seconds to wait for a lock unless told otherwise."""
+PATIENCE = 90.0
+"""Seconds to wait for a lock unless told otherwise: longer than anybody reads in one go."""
 
 ATTEMPT = 0.25
 """Seconds SQLite itself waits for a lock before Python asks again. SQLite waits deaf to signals:
