@@ -1,7 +1,13 @@
 """What holds for all tests."""
 
+from collections.abc import Callable
+from functools import partial
+
 import pytest
 from hypothesis import settings
+
+DONE = "done"
+"""Under this name a test's report says what it did."""
 
 settings.register_profile("unhurried", deadline=None)
 settings.load_profile("unhurried")  # no test is about speed, and the machine may be busy
@@ -19,6 +25,25 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         action="store_true",
         help="what is bounded in a normal run runs whole: a hundred kills, readers for a minute",
     )
+
+
+@pytest.fixture
+def tell(record_property: Callable[[str, object], None]) -> Callable[[str], None]:
+    """Give what a test that did much uses to say how much; `--torture` shows it at the end."""
+    return partial(record_property, DONE)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Show what the long tests did."""
+    if not terminalreporter.config.getoption("--torture"):
+        return
+    terminalreporter.section("what was done")
+    for reports in terminalreporter.stats.values():
+        for report in reports:
+            if isinstance(report, pytest.TestReport) and report.when == "call":
+                for name, what in report.user_properties:
+                    if name == DONE:
+                        terminalreporter.line(f"{report.nodeid} ({report.duration:.0f} s): {what}")
 
 
 @pytest.fixture(scope="session")

@@ -1,0 +1,58 @@
+"""What may befall a laboratory and its files, and what must happen then: the list we answer to.
+
+A test that is about one of them says so with ``@pytest.mark.fault(number)``; `tests/test_faults.py`
+sees to it that each has one. Exit codes: 2 usage, 3 database, 4 bad input. Always: one line on
+stderr that says what is wrong, where, and what to do; never a traceback; nothing that was saved is
+lost. The numbers left out stand for what affcli does not have yet: downgrades, tools and plug-ins
+of one's own, databases on a server.
+"""
+
+FAULTS = {
+    1: "Learning is killed (SIGKILL), again and again: every behavior that was said or seen to be "
+    "saved is there, and SQLite finds the file sound.",
+    2: "What was killed or interrupted is gone on with: at the end every table equals that of a "
+    "run that nobody disturbed, but for when it happened.",
+    3: "Ctrl-C or SIGTERM: it ends within two seconds with 130 or 143, keeps what was saved, and "
+    "says how to go on.",
+    4: "The disk is full, or a quota is reached: 3, the file stays good, and with room again the "
+    "same command goes on.",
+    5: "Another process holds the lock for longer than one waits: 3, and it is named.",
+    6: "Several learn on one file at once: all succeed, no lock is an error, nothing is there "
+    "twice or missing.",
+    7: "Somebody reads the file all the while, or for a minute in one go: the writer goes on or "
+    "waits, and loses nothing.",
+    8: "Eight first runs, or eight upgrades, at once on one file: it is migrated once, and all of "
+    "them end with 0.",
+    9: "A kill in the middle of a migration: the schema is the old one or the new one, with "
+    "all that was in it.",
+    10: "A migration fails: the copy that was made before is named, and can be used; the database "
+    "is as it was.",
+    11: "The schema is newer than the program: 3, both revisions are named, nothing is written.",
+    13: "No database, a truncated one, one with a damaged page: 3, and the file is left untouched.",
+    14: "The file is empty, or another program's: writing makes a database of the first; the other is "
+    "refused.",
+    15: "The file is missing: a command that reads says so, and makes none.",
+    16: "The file or its folder is read-only: reading works, writing is 3.",
+    17: "A write-ahead log with a SQLite that cannot be trusted with it, or a file system of a "
+    "network: `affcli doctor` points it out and says what to do.",
+    18: "A copy is made during a run: it opens, and its counts agree with one another.",
+    19: "A message that something is saved comes after the disk has confirmed it.",
+    20: "A tool is named as a path, absolute or through a link: refused; and no output goes "
+    "anywhere but where it was asked for.",
+    21: "Names with markup, escape sequences, NUL, halves of characters, or of 10 kB: refused, or "
+    "shown escaped.",
+    22: "SQL where a name is wanted, anywhere: it is a name and nothing else.",
+    23: "NaN, infinity, negative masses, frictions and sizes: 4, the field is named, and they "
+    "never reach the physics engine, which would end the process.",
+    29: "The simulation diverges: the trial is invalid, and never counts as a success.",
+    30: "`affcli sql` with anything but one SELECT, or one that is endless or huge: denied, or "
+    "stopped within two seconds.",
+    31: "HTML in a name: it is text in the page, which loads nothing from outside.",
+    32: "A cell of a CSV that a spreadsheet would take for a formula: it is quoted as text, and "
+    "numbers are left alone.",
+    33: "NaN or infinity where JSON is asked for: the JSON is valid.",
+    35: "A reader who leaves (`| head`), no terminal, 40 columns, NO_COLOR: a clean end, and text "
+    "that can be read.",
+    36: "A seed of 2^63, or a negative one: 4.",
+}
+"""What happens, and what must follow, by number."""
