@@ -29,8 +29,8 @@ FAULTS = {
     "is as it was.",
     11: "The schema is newer than the program: 3, both revisions are named, nothing is written.",
     13: "No database, a truncated one, one with a damaged page: 3, and the file is left untouched.",
-    14: "The file is empty, or another program's: writing makes a database of the first; the other is "
-    "refused.",
+    14: "The file is empty, or another program's: writing makes a database of the first; the other "
+    "is refused.",
     15: "The file is missing: a command that reads says so, and makes none.",
     16: "The file or its folder is read-only: reading works, writing is 3.",
     17: "A write-ahead log with a SQLite that cannot be trusted with it, or a file system of a "

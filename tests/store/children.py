@@ -3,15 +3,16 @@
 Each function says "ready" on stdout when the test may go on.
 """
 
+import hashlib
 import os
 import signal
 import sqlite3
 import sys
-import time
+from importlib import import_module
 from pathlib import Path
 
 from affcli.errors import DatabaseError
-from affcli.store import Store, open_store, run_sql
+from affcli.store import Store, open_store, run_sql, upgrade
 
 
 def write_something(store: Store) -> None:
@@ -134,25 +135,9 @@ def writing_anew(path: Path) -> str:
 
 def killed_while_migrating(path: Path) -> None:
     """Make the schema in one child after another, each killed at a later statement."""
-    import sqlalchemy as sa
-
-    with open_store(path.with_name("warm.db"), create=True, write=True):
-        pass  # everything is imported now: a child is a fork, and cheap
+    warm_up(path)
     for statement in range(1, 60):
-        child = os.fork()
-        if child == 0:
-            count = 0
-
-            def count_and_die(*_: object) -> None:
-                nonlocal count
-                count += 1
-                if count == statement:  # noqa: B023
-                    os.kill(os.getpid(), signal.SIGKILL)
-
-            sa.event.listen(sa.Engine, "before_cursor_execute", count_and_die)
-            with open_store(path, create=True, write=True):
-                os._exit(0)
-        _, status = os.waitpid(child, 0)
+        status = killed_at(statement, path)
         driver = sqlite3.connect(path)
         tables = driver.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
         sound = driver.execute("PRAGMA integrity_check").fetchone()[0]
@@ -160,7 +145,61 @@ def killed_while_migrating(path: Path) -> None:
         sys.stdout.write(f"{statement} {status} {tables} {sound!s}\n")
         if status == 0:
             return
-        time.sleep(0)
+
+
+def killed_while_upgrading(path: Path) -> None:
+    """Upgrade the database in one child after another, each killed at a later statement."""
+    warm_up(path)
+    for statement in range(1, 90):
+        status = killed_at(statement, path)
+        driver = sqlite3.connect(path)
+        whole = "\n".join(driver.iterdump())
+        sound = driver.execute("PRAGMA integrity_check").fetchone()[0]
+        driver.close()
+        digest = hashlib.sha256(whole.encode()).hexdigest()
+        sys.stdout.write(f"{statement} {status} {digest} {sound!s}\n")
+        if status == 0:
+            return
+
+
+def warm_up(path: Path) -> None:
+    """Import everything: a child is a fork then, and cheap."""
+    with open_store(path.with_name("warm.db"), create=True, write=True):
+        pass
+
+
+def killed_at(statement: int, path: Path) -> int:
+    """Migrate a database in a child that is killed at a statement; return how it ended."""
+    import sqlalchemy as sa
+
+    child = os.fork()
+    if child == 0:
+        count = 0
+
+        def count_and_die(*_: object) -> None:
+            nonlocal count
+            count += 1
+            if count == statement:
+                os.kill(os.getpid(), signal.SIGKILL)
+
+        sa.event.listen(sa.Engine, "before_cursor_execute", count_and_die)
+        if path.exists() and path.stat().st_size:
+            upgrade(path)
+        else:
+            with open_store(path, create=True, write=True):
+                pass
+        os._exit(0)
+    return os.waitpid(child, 0)[1]
+
+
+def upgrade_when_told(path: Path) -> None:
+    """Upgrade at the same moment as others who wait for a line on stdin too."""
+    import_module("alembic.command")  # so that what begins at once is the upgrade itself
+    ready()
+    sys.stdin.readline()
+    copies: list[Path] = []
+    revisions = upgrade(path, copied=copies.append)
+    sys.stdout.write(f"{revisions[1]} {' '.join(copy.name for copy in copies)}\n")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,108 @@
+"""Upgrades that are killed, that run at once, or that fail."""
+
+import hashlib
+import shutil
+import signal
+import sqlite3
+from contextlib import ExitStack, closing
+from pathlib import Path
+
+import pytest
+
+from affcli.errors import DatabaseError
+from affcli.store import check, database_info, upgrade
+from affcli.store.identity import REVISION
+from tests.store.processes import child, finished
+
+DATABASES = Path(__file__).parent / "databases"
+"""A database of every past revision, made by the affcli of its time."""
+PAST = [f"{k:04}" for k in range(1, int(REVISION))]
+
+
+def old_database(revision: str, tmp_path: Path) -> Path:
+    """Return a database of a past revision, for this test alone."""
+    path = Path(shutil.copy(DATABASES / f"{revision}.db", tmp_path / "old.db"))
+    path.chmod(0o644)
+    return path
+
+
+def everything(path: Path) -> str:
+    """Return all that a database holds, as SQL."""
+    with closing(sqlite3.connect(path)) as driver:
+        return "\n".join(driver.iterdump())
+
+
+def digest(path: Path) -> str:
+    """Return what tells one content of a database from another."""
+    return hashlib.sha256(everything(path).encode()).hexdigest()
+
+
+@pytest.mark.fault(9)
+@pytest.mark.parametrize("revision", PAST)
+def test_a_kill_at_any_statement_of_an_upgrade_leaves_the_old_or_the_new(
+    revision: str, tmp_path: Path
+) -> None:
+    """And each time a copy of the old."""
+    path = old_database(revision, tmp_path)
+    upgraded = Path(shutil.copy(path, tmp_path / "upgraded.db"))
+    upgrade(upgraded)
+    old, new = digest(path), digest(upgraded)
+    code, out, err = finished("killed_while_upgrading", path)
+    assert (code, err) == (0, "")
+    *deaths, end = [line.split() for line in out.splitlines()]
+    assert len(deaths) > 5  # every statement is a place to die
+    for _, status, found, sound in deaths:
+        assert (int(status), found, sound) == (signal.SIGKILL, old, "ok")
+    assert end[1:] == ["0", new, "ok"]
+    copies = sorted(tmp_path.glob(f"old.db.{revision}*.backup"))
+    assert copies
+    assert {digest(copy) for copy in copies} == {old}
+
+
+@pytest.mark.fault(8)
+@pytest.mark.fault(9)
+def test_eight_upgrades_at_once_are_one_and_its_copy_is_of_the_old(tmp_path: Path) -> None:
+    path = old_database("0001", tmp_path)
+    old = everything(path)
+    with ExitStack() as stack:
+        others = [stack.enter_context(child("upgrade_when_told", path)) for _ in range(8)]
+        for other in others:
+            assert other.stdin is not None
+            other.stdin.write("go\n")
+            other.stdin.flush()
+        said = [other.communicate(timeout=60) for other in others]
+    assert [(err, other.returncode) for (_, err), other in zip(said, others, strict=True)] == (
+        [("", 0)] * 8
+    )
+    assert sorted(out.split() for out, _ in said) == (
+        [[REVISION]] * 7 + [[REVISION, "old.db.0001.backup"]]
+    )
+    assert everything(tmp_path / "old.db.0001.backup") == old
+    assert database_info(path).revision == REVISION
+    assert [finding for finding in check(path) if finding.wrong] == []
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["old.db", "old.db.0001.backup"]
+
+
+@pytest.mark.fault(10)
+@pytest.mark.parametrize(
+    ("added", "says"),
+    [
+        ("CREATE TABLE verification (mine TEXT)", "table verification already exists"),
+        ("ALTER TABLE trial ADD COLUMN sensor TEXT", "duplicate column name: sensor"),
+    ],
+)
+def test_what_a_migration_stumbles_over_is_named_and_the_copy_opens(
+    added: str, says: str, tmp_path: Path
+) -> None:
+    """Something that another program has done to the database."""
+    path = old_database("0001", tmp_path)
+    with closing(sqlite3.connect(path, isolation_level=None)) as driver:
+        driver.execute(added)
+    before, told = everything(path), list[Path]()
+    with pytest.raises(DatabaseError, match=says) as caught:
+        upgrade(path, copied=told.append)
+    message = str(caught.value)
+    assert message.isprintable()
+    assert f"could not be brought from revision 0001 to {REVISION}" in message
+    assert str(told[0].name) in message
+    assert everything(path) == everything(told[0]) == before
