@@ -22,11 +22,20 @@ READING = {
     "replay": ("replay", "1"),
     "replay --run": ("replay", "--run", "1"),
     "replay --all": ("replay", "--all"),
+    "report --html": ("report", "--html", "page.html"),
+    "predict": ("predict",),
+    "db check": ("db", "check"),
+    "db backup": ("db", "backup"),
+    "figure affordances": ("figure", "affordances", "--out", "a.png"),
+    "figure results": ("figure", "results", "--out", "a.png"),
+    "camera view": ("camera", "view", "--trial", "1", "--out", "a.png"),
 }
 WRITING_WHAT_IS_THERE = {
     "solve": ("solve", "--goal", "2"),
     "break-tool": ("break-tool",),
     "db upgrade": ("db", "upgrade"),
+    "verify --update": ("verify", "--update"),
+    "learn --resume": ("learn", "--resume"),
 }
 MAKING = {
     "learn": ("learn", "--tool", "stick", "--behaviors", "5"),
@@ -73,6 +82,13 @@ def truncated(path: Path) -> None:
     path.write_bytes(path.read_bytes()[:-5000])
 
 
+def with_a_flipped_page(path: Path) -> None:
+    whole = bytearray(path.read_bytes())
+    middle = len(whole) // 8192 * 4096
+    whole[middle : middle + 4096] = bytes(255 - byte for byte in whole[middle : middle + 4096])
+    path.write_bytes(whole)
+
+
 def of_another_program(path: Path) -> None:
     path.unlink()
     with closing(sqlite3.connect(path)) as other:
@@ -87,6 +103,7 @@ def from_the_future(path: Path) -> None:
 SPOILT: dict[Callable[[Path], None], str] = {
     not_a_database: "not a SQLite database; name another file with --db",
     truncated: "damaged; restore a copy of the file",
+    with_a_flipped_page: "damaged; restore a copy of the file",
     of_another_program: "of another program; name another file with --db",
     from_the_future: f"at revision 0099, this affcli knows {REVISION}: install a newer",
 }

@@ -2,9 +2,13 @@
 
 import shutil
 import sqlite3
+from contextlib import closing
 from pathlib import Path
 
-from tests.cli.program import contents, done, names_in, refused
+import pytest
+
+from affcli.store.journal import journal_mode_for
+from tests.cli.program import affcli, contents, done, names_in, refused, rows
 
 OLD = Path(__file__).parents[1] / "store" / "databases" / "0001.db"
 
@@ -17,6 +21,43 @@ def test_the_doctor_tells_what_is_here(learned: Path) -> None:
     assert all(len(line) <= 40 for line in shown.splitlines())
 
 
+@pytest.mark.fault(17)
+@pytest.mark.skipif(
+    journal_mode_for(sqlite3.sqlite_version_info) == "wal", reason="this SQLite is mended"
+)
+def test_the_doctor_points_out_a_write_ahead_log_that_is_not_safe_here(learned: Path) -> None:
+    """As another program, or a newer SQLite, may leave one."""
+    with closing(sqlite3.connect(learned)) as driver:
+        driver.execute("PRAGMA journal_mode = wal")
+        ended = done("doctor", "--db", learned, "--json")
+    (fact,) = (fact for fact in ended.json if fact["what"] == "database")
+    assert (fact["state"], "journal mode wal" in fact["value"]) == ("look", True)
+    assert "one process at a time" in fact["remedy"]
+    done("learn", "--tool", "l-stick", "--behaviors", "5", "--db", learned)
+    assert rows(learned, "PRAGMA journal_mode") == [("delete",)]
+
+
+@pytest.mark.fault(10)
+def test_an_upgrade_that_fails_is_one_line_after_the_name_of_the_copy(tmp_path: Path) -> None:
+    old = Path(shutil.copy(OLD, tmp_path / "old.db"))
+    old.chmod(0o644)
+    with closing(sqlite3.connect(old)) as driver:
+        driver.execute("CREATE TABLE verification (mine TEXT)")
+    before = contents(old)
+    ended = affcli("db", "upgrade", "--db", old)
+    assert ended.code == 3
+    copied, failed = ended.err.splitlines()
+    copy = Path(copied.removeprefix("a copy of it as it was: "))
+    assert copy == tmp_path / "old.db.0001.backup"
+    assert f"{old}: could not be brought from revision 0001 to " in failed
+    assert "table verification already exists" in failed
+    assert contents(old) == contents(copy) == before
+    with closing(sqlite3.connect(copy)) as driver:  # what its owner does next
+        driver.execute("DROP TABLE verification")
+    done("db", "upgrade", "--db", copy)
+    done("db", "check", "--db", copy)
+
+
 def test_the_doctor_says_what_to_do_and_fails(tmp_path: Path) -> None:
     old = shutil.copy(OLD, tmp_path / "old.db")
     ended = refused_with_output(3, "doctor", "--db", old)
@@ -25,8 +66,6 @@ def test_the_doctor_says_what_to_do_and_fails(tmp_path: Path) -> None:
 
 def refused_with_output(code: int, *args: str | Path) -> str:
     """Run a command that ends with this code, and return what it wrote to stdout."""
-    from tests.cli.program import affcli
-
     ended = affcli(*args)
     assert ended.code == code
     return ended.out

@@ -1,0 +1,156 @@
+"""Names that are more than names, given to every option of every command that takes a text."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import typer
+
+from affcli.cli.app import app
+from tests.cli.program import affcli, contents, names_in, one_printable_line, refused
+
+DROP = "x'); DROP TABLE learning_run; --"
+REQUIRED = {"--goal": "1", "--out": "out.csv", "query": "select 1", "row": "1", "number": "1"}
+REQUIRED |= {"--robots": "1", "--workers": "1"}  # all else would be done, too, and take its time
+REQUIRED |= {"row_id": "1", "--calibration": "none.json", "image": "none.png"}
+ELSEWHERE = ("--db", "--out", "--html", "--gif", "--video")
+"""Options that name a file to be written: such a file may have any name."""
+
+
+def commands(
+    group: Any = None, path: tuple[str, ...] = ()
+) -> Iterator[tuple[tuple[str, ...], Any]]:
+    """Yield every command with the words that call it."""
+    group = group or typer.main.get_command(app)
+    for name, command in group.commands.items():
+        if hasattr(command, "commands"):
+            yield from commands(command, (*path, name))
+        else:
+            yield (*path, name), command
+
+
+def names_of(command: Any) -> list[str]:
+    """Return the options and arguments of a command that take a value."""
+    return [
+        (parameter.opts or [parameter.name])[0]
+        for parameter in command.params
+        if not getattr(parameter, "is_flag", False)
+    ]
+
+
+def given(command: tuple[str, ...], names: list[str], name: str, value: str) -> list[str]:
+    """Return the words of a command with one value, and what it cannot do without."""
+    words = list(command)
+    for other, text in (
+        {key: REQUIRED[key] for key in REQUIRED if key in names} | {name: value}
+    ).items():
+        words += [other, text] if other.startswith("--") else [text]
+    return words
+
+
+EVERY = [
+    pytest.param(path, names_of(command), name, id=f"{' '.join(path)} {name}")
+    for path, command in commands()
+    for name in names_of(command)
+]
+
+
+@pytest.mark.fault(22)
+@pytest.mark.parametrize(("command", "names", "name"), EVERY)
+def test_sql_is_inert_wherever_it_is_given(
+    command: tuple[str, ...], names: list[str], name: str, learned: Path, leisurely: Path
+) -> None:
+    before = contents(learned)
+    words = given(command, names, name, DROP)
+    if "--config" in names and name != "--config":
+        words += ["--config", str(leisurely)]
+    if "--db" in names and name != "--db":
+        words += ["--db", str(learned)]
+    ended = affcli(*words, cwd=learned.parent)
+    assert ended.code in {0, 2, 3, 4}, ended
+    if ended.code:
+        one_printable_line(ended.err)
+    assert contents(learned) == before
+    if name not in ELSEWHERE:
+        assert ended.code, ended
+        assert names_in(learned.parent) == [learned.name]
+
+
+TOOLS = [(path, names_of(command)) for path, command in commands() if "--tool" in names_of(command)]
+PATHS = ("../../x", "/etc/passwd", "./stick", "stick/../stick", "link")
+
+
+@pytest.mark.fault(20)
+@pytest.mark.parametrize(("command", "names"), TOOLS, ids=lambda words: words[0])
+def test_a_tool_that_is_a_path_is_no_tool(
+    command: tuple[str, ...], names: list[str], learned: Path
+) -> None:
+    """Also one that leads to a file of the name of a tool."""
+    folder = learned.parent / "one" / "two"
+    folder.mkdir(parents=True)
+    (folder / "stick").write_text("a tool")
+    (folder / "link").symlink_to("stick")
+    for name in PATHS:
+        words = given(command, names, "--tool", name)
+        assert "did you mean" in refused(2, *words, *_database(names, learned), cwd=folder)
+    assert names_in(folder) == ["link", "stick"]
+    assert names_in(learned.parent) == [learned.name, "one"]
+
+
+def _database(names: list[str], database: Path) -> tuple[str, ...]:
+    """Return the option that names the database, where there is one."""
+    return ("--db", str(database)) if "--db" in names else ()
+
+
+WRITING = {
+    "figure": ("figure", "workspace", "--out", "out.png"),
+    "rows": ("table", "export", "--out", "out.csv"),
+    "copy": ("db", "backup", "--out", "out.backup"),
+    "picture": ("camera", "view", "--pattern", "--out", "out.png"),
+}
+
+
+@pytest.mark.fault(20)
+@pytest.mark.parametrize("words", WRITING.values(), ids=WRITING.keys())
+def test_output_stays_where_it_was_asked_for(words: tuple[str, ...], used: Path) -> None:
+    """A link that lies there is replaced; what it leads to, or would lead to, is left alone."""
+    folder, elsewhere = used.parent / "mine", used.parent / "another's"
+    folder.mkdir()
+    elsewhere.mkdir()
+    out = folder / words[-1]
+    kept = elsewhere / "kept"
+    kept.write_text("not to be written over")
+    database = () if words[0] in {"figure", "camera"} else ("--db", used)
+    for target, force in ((kept, ["--force"]), (elsewhere / "new", [])):
+        out.unlink(missing_ok=True)
+        out.symlink_to(target)
+        ended = affcli(*words, *database, *force, cwd=folder)
+        assert ended.code == 0, ended
+        assert out.is_file()
+        assert not out.is_symlink()
+        assert kept.read_text() == "not to be written over"
+        assert names_in(elsewhere) == ["kept"]
+        assert names_in(folder) == [out.name]
+
+
+SEEDED = [
+    (path, names_of(command)) for path, command in commands() if "--seed" in names_of(command)
+]
+
+
+@pytest.mark.fault(36)
+@pytest.mark.parametrize(("command", "names"), SEEDED, ids=lambda words: words[0])
+@pytest.mark.parametrize("seed", ["-1", str(-(2**63)), str(2**63), str(2**64), str(10**40)])
+def test_every_command_with_a_seed_refuses_one_that_is_none(
+    command: tuple[str, ...], names: list[str], seed: str, tmp_path: Path
+) -> None:
+    words = given(command, names, "--seed", seed)
+    if command[0] == "learn":
+        words += ["--tool", "stick"]
+    if "--out" in words:
+        words[words.index("--out") + 1] = "out.png"
+    line = refused(4, *words, cwd=tmp_path)
+    assert f"--seed {seed[:30]}" in line
+    assert line.endswith("must lie in 0 to 2^63 - 1")
+    assert names_in(tmp_path) == []
