@@ -36,7 +36,7 @@ FAULTS = {
     17: "A write-ahead log with a SQLite that cannot be trusted with it, or a file system of a "
     "network: `affcli doctor` points it out and says what to do.",
     18: "A copy is made during a run: it opens, and its counts agree with one another.",
-    19: "A message that something is saved comes after the disk has confirmed it.",
+    19: "Something is said to be saved: the disk has confirmed it before.",
     20: "A tool is named as a path, absolute or through a link: refused; and no output goes "
     "anywhere but where it was asked for.",
     21: "Names with markup, escape sequences, NUL, halves of characters, or of 10 kB: refused, or "

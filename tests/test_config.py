@@ -195,6 +195,7 @@ def test_an_unknown_section_or_key_is_told_with_those_there_are(tmp_path: Path) 
     assert "max_steps" in known
 
 
+@pytest.mark.fault(23)
 @pytest.mark.parametrize(
     "value",
     ['"10"', "true", "false", "[10.0]", "{ x = 1 }", "2008-05-01", "nan", "inf", "-inf", "1e9"],
@@ -204,6 +205,7 @@ def test_what_is_no_number_in_range_is_refused_for_every_key(tmp_path: Path, val
         assert f"{section}.{key} = " in refused(tmp_path, f"[{section}]\n{key} = {value}\n")
 
 
+@pytest.mark.fault(23)
 def test_negative_numbers_are_refused_but_for_an_angle_and_places(tmp_path: Path) -> None:
     negative = {("arm", "shoulder_min_degrees"), ("camera", "x"), ("camera", "y")}
     for section, key in KEYS:
@@ -312,6 +314,7 @@ def test_a_file_that_cannot_be_read_is_refused(tmp_path: Path) -> None:
         load_settings(tmp_path)
 
 
+@pytest.mark.fault(21)
 def test_names_with_control_characters_are_shown_escaped(tmp_path: Path) -> None:
     path = tmp_path / "red\x1b[31m\n.toml"
     path.write_text('["a\\u001b\\n"]\n', encoding="utf-8")
@@ -348,6 +351,7 @@ def outcome(mapping: dict[str, Any]) -> Settings | BadInputError:
         return error
 
 
+@pytest.mark.fault(23)
 @hypothesis_settings(deadline=None, max_examples=200)
 @given(keys, json_values)
 def test_any_value_is_either_taken_as_it_is_or_refused(key: tuple[str, str], value: Any) -> None:

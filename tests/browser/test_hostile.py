@@ -36,6 +36,7 @@ def hostile(life_database: Path, tmp_path_factory: pytest.TempPathFactory) -> Pa
     return path
 
 
+@pytest.mark.fault(31)
 @pytest.mark.parametrize("javascript", [True, False])
 def test_what_it_was_given_is_text(opened: Opened, hostile: Path, javascript: bool) -> None:
     """That nothing was executed and nothing asked for `opened` sees to."""
@@ -62,6 +63,7 @@ def test_it_plays_all_the_same(opened: Opened, hostile: Path) -> None:
     assert text(page.locator("#why h3")) == "Step 1: why this row?"
 
 
+@pytest.mark.fault(31)
 def test_the_page_allows_itself_nothing_from_outside(opened: Opened, hostile: Path) -> None:
     """Even if something got into it: no connection, no picture, no eval."""
     page = opened(_page_of(hostile))

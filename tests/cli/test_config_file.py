@@ -31,6 +31,8 @@ BAD = {
 }
 
 
+@pytest.mark.fault(21)
+@pytest.mark.fault(23)
 @pytest.mark.parametrize(("text", "says"), BAD.values(), ids=BAD.keys())
 def test_bad_settings_are_named(text: bytes, says: str, tmp_path: Path) -> None:
     (tmp_path / "my.toml").write_bytes(text)

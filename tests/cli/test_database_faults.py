@@ -46,6 +46,7 @@ EVERY = NEEDING | MAKING
 SOME = {name: EVERY[name] for name in ("report", "sql", "solve", "learn")}
 
 
+@pytest.mark.fault(15)
 @pytest.mark.parametrize("args", NEEDING.values(), ids=NEEDING.keys())
 def test_a_missing_file_is_named_and_not_made(args: tuple[str, ...], tmp_path: Path) -> None:
     line = refused(3, *args, cwd=tmp_path)
@@ -53,6 +54,7 @@ def test_a_missing_file_is_named_and_not_made(args: tuple[str, ...], tmp_path: P
     assert names_in(tmp_path) == []
 
 
+@pytest.mark.fault(14)
 @pytest.mark.parametrize("args", NEEDING.values(), ids=NEEDING.keys())
 def test_an_empty_file_stays_empty_when_it_is_read(args: tuple[str, ...], tmp_path: Path) -> None:
     path = tmp_path / "affcli.db"
@@ -61,6 +63,7 @@ def test_an_empty_file_stays_empty_when_it_is_read(args: tuple[str, ...], tmp_pa
     assert path.stat().st_size == 0
 
 
+@pytest.mark.fault(14)
 def test_an_empty_file_is_initialised_by_learning(tmp_path: Path) -> None:
     path = tmp_path / "mine.db"
     path.touch()
@@ -109,6 +112,9 @@ SPOILT: dict[Callable[[Path], None], str] = {
 }
 
 
+@pytest.mark.fault(11)
+@pytest.mark.fault(13)
+@pytest.mark.fault(14)
 @pytest.mark.parametrize("spoil", SPOILT, ids=lambda spoil: spoil.__name__)
 @pytest.mark.parametrize("args", SOME.values(), ids=SOME.keys())
 def test_a_spoilt_file_is_left_as_it_is(
@@ -123,6 +129,7 @@ def test_a_spoilt_file_is_left_as_it_is(
     assert names_in(learned.parent) == [learned.name]
 
 
+@pytest.mark.fault(14)
 @pytest.mark.parametrize("name", sorted(EVERY.keys() - SOME.keys()))
 def test_every_other_command_refuses_another_programs_file(name: str, learned: Path) -> None:
     of_another_program(learned)
@@ -147,6 +154,7 @@ PATHS = {
 }
 
 
+@pytest.mark.fault(21)
 @pytest.mark.parametrize(("path", "says"), PATHS.values(), ids=PATHS.keys())
 def test_an_impossible_path_is_one_line(path: bytes, says: str, tmp_path: Path) -> None:
     for args in (EVERY["learn"], EVERY["sql"]):
@@ -154,6 +162,7 @@ def test_an_impossible_path_is_one_line(path: bytes, says: str, tmp_path: Path) 
     assert names_in(tmp_path) == []
 
 
+@pytest.mark.fault(22)
 @pytest.mark.parametrize(
     "name", ["a'; DROP TABLE learning_run; --.db", "50% of #1?.db", "[x] b.db"]
 )
@@ -166,6 +175,7 @@ def test_a_strange_path_is_only_a_path(name: str, tmp_path: Path) -> None:
     assert names_in(tmp_path) == [name]
 
 
+@pytest.mark.fault(21)
 def test_a_path_of_no_character_is_shown_escaped(tmp_path: Path) -> None:
     name = b"\xff.db"
     done(*MAKING["learn"], "--db", name, cwd=tmp_path)

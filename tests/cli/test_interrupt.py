@@ -63,6 +63,9 @@ def stopped(process: subprocess.Popen[str], signum: int) -> Ended:
     return ended
 
 
+@pytest.mark.fault(1)
+@pytest.mark.fault(2)
+@pytest.mark.fault(3)
 def test_learning_goes_on_after_whatever_stopped_it(tmp_path: Path) -> None:
     """Interrupted, terminated and killed in turn, the run ends as if nothing had happened."""
     database, alone = tmp_path / "my.db", tmp_path / "alone.db"
@@ -87,6 +90,7 @@ def test_learning_goes_on_after_whatever_stopped_it(tmp_path: Path) -> None:
     assert contents(database) == contents(alone)
 
 
+@pytest.mark.fault(2)
 def test_resume_alone_goes_on_with_every_interrupted_run(tmp_path: Path) -> None:
     """Each with its own seed, length and settings, which need not be given again."""
     database, alone = tmp_path / "my.db", tmp_path / "alone.db"
@@ -120,6 +124,7 @@ def begun(database: Path) -> int:
     return count(database, "SELECT count(*) FROM learning_run WHERE behaviors > 0")
 
 
+@pytest.mark.fault(2)
 def test_resume_with_nothing_to_resume_starts_fresh(tmp_path: Path, leisurely: Path) -> None:
     database, again = tmp_path / "my.db", tmp_path / "again.db"
     learn = ("learn", "--tool", "stick", "--behaviors", "30")
@@ -135,6 +140,7 @@ def test_resume_with_nothing_to_resume_starts_fresh(tmp_path: Path, leisurely: P
     assert not missing.exists()
 
 
+@pytest.mark.fault(3)
 @pytest.mark.parametrize(("signum", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_stopped_while_it_starts_it_is_one_line_too(
     signum: signal.Signals, code: int, tmp_path: Path
@@ -158,6 +164,8 @@ def handles_signals(pid: int) -> bool:
     return int(caught.split()[1], 16) & both == both
 
 
+@pytest.mark.fault(2)
+@pytest.mark.fault(3)
 def test_a_stopped_reproduction_goes_on(leisurely: Path, tmp_path: Path, reproduced: Path) -> None:
     """Stopped, killed and done with another number of workers: the same store."""
     database = tmp_path / "my.db"
@@ -180,6 +188,7 @@ def test_a_stopped_reproduction_goes_on(leisurely: Path, tmp_path: Path, reprodu
     assert contents(database) == contents(reproduced)
 
 
+@pytest.mark.fault(3)
 @pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGTERM])
 def test_workers_end_with_their_parent(signum: signal.Signals, tmp_path: Path) -> None:
     """Lives of full length take seconds; nobody waits for those begun."""
@@ -189,6 +198,7 @@ def test_workers_end_with_their_parent(signum: signal.Signals, tmp_path: Path) -
         assert stopped(process, signum) == Ended(128 + signum, "", GOES_ON)
 
 
+@pytest.mark.fault(3)
 @pytest.mark.parametrize("delay", [0.0, 0.3, 0.6])
 def test_ctrl_c_reaches_workers_that_are_just_starting(delay: float, tmp_path: Path) -> None:
     """A terminal sends it to the whole group; the parent alone has something to say."""
@@ -220,6 +230,7 @@ def test_a_worker_that_died_is_named(tmp_path: Path) -> None:
     assert "a worker process died" in one_printable_line(ended.err)
 
 
+@pytest.mark.fault(3)
 def test_solving_keeps_the_steps_before_it_was_stopped(learned: Path) -> None:
     """Counters and steps stay together, and nothing is promised that is not so."""
     with started("solve", "--goal", "1", "--tool", "stick", "--db", learned) as process:

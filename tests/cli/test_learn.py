@@ -117,6 +117,8 @@ def all_well(ended: list[Ended]) -> None:
         assert len(one.err.splitlines()) == 1
 
 
+@pytest.mark.fault(6)
+@pytest.mark.fault(8)
 @pytest.mark.parametrize("first_runs", [2, 8])
 def test_several_at_once_make_one_run(first_runs: int, tmp_path: Path) -> None:
     """Even the first on a new file: one migrates, the others wait, nobody fails."""

@@ -58,6 +58,7 @@ def as_nobody(*commands: tuple[str, ...]) -> list[Ended]:
     return results
 
 
+@pytest.mark.fault(16)
 @pytest.mark.parametrize("what", ["file", "folder"])
 def test_reading_works_and_writing_is_refused(what: str, public: Path) -> None:
     public.chmod(0o444 if what == "file" else 0o666)
@@ -76,6 +77,7 @@ def test_reading_works_and_writing_is_refused(what: str, public: Path) -> None:
     assert names_in(public.parent) == [public.name]
 
 
+@pytest.mark.fault(16)
 @pytest.mark.skipif(os.getuid() != 0, reason="only root can make a file that is another's")
 def test_what_may_not_be_read_is_named(public: Path) -> None:
     """A database is exit 3, settings are exit 4."""

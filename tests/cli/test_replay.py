@@ -293,6 +293,7 @@ def test_a_changed_learning_run_is_exit_code_1_and_named(learned: Path) -> None:
     assert [d["number"] for d in ended.json["differences"]] == [3, 21]
 
 
+@pytest.mark.fault(3)
 @pytest.mark.parametrize(("signum", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_stopped_away_from_a_terminal_it_is_one_line(
     signum: signal.Signals, code: int, learned: Path

@@ -147,6 +147,8 @@ HOSTILE = {
 }
 
 
+@pytest.mark.fault(21)
+@pytest.mark.fault(23)
 @pytest.mark.parametrize(("change", "code", "says"), HOSTILE.values(), ids=HOSTILE.keys())
 def test_a_trial_that_affcli_did_not_write_is_one_line(
     change: str, code: int, says: str, used: Path

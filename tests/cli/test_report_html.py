@@ -70,6 +70,7 @@ def test_of_a_reproduction_one_robot_is_shown(reproduced: Path) -> None:
     assert "affcli report --db reproduced.db --html reproduced.html --session 1 --robot 1" in other
 
 
+@pytest.mark.fault(31)
 def test_nothing_of_it_comes_from_elsewhere(used: Path) -> None:
     page = page_of(used)
     assert not re.search(r"""(src|srcset|action|data|poster)\s*=\s*["']""", page)
@@ -134,6 +135,7 @@ def test_a_place_that_cannot_be_written_is_named(used: Path, tmp_path: Path) -> 
     assert refused(4, "report", "--db", used, "--html", f"{'x' * 300}.html")
 
 
+@pytest.mark.fault(4)
 def test_a_full_disk_leaves_what_was_there(learned: Path, tmp_path: Path) -> None:
     """As a quota does it: the process may not write files of more than 20 kB."""
     page = tmp_path / "page.html"
@@ -210,6 +212,7 @@ def test_reading_changes_nothing(used: Path) -> None:
     assert used.read_bytes() == before
 
 
+@pytest.mark.fault(31)
 def test_a_name_of_the_database_is_text_and_nothing_else(used: Path, tmp_path: Path) -> None:
     """In HTML and in the command at the end, which can be copied into a shell."""
     database = Path(shutil.copy(used, tmp_path / "<img src=x onerror=alert(1)> '$(id)' \u202e.db"))
@@ -222,6 +225,7 @@ def test_a_name_of_the_database_is_text_and_nothing_else(used: Path, tmp_path: P
     assert "&#39;&lt;img src=x onerror=alert(1)&gt; &#39;&#34;&#39;&#34;&#39;$(id)" in written
 
 
+@pytest.mark.fault(21)
 def test_a_name_that_is_no_text_is_shown_escaped(used: Path, tmp_path: Path) -> None:
     database = Path(os.fsdecode(os.fsencode(tmp_path) + b"/\xff\xfe.db"))
     shutil.copy(used, database)
@@ -273,6 +277,8 @@ TEXTS: dict[str, str | bytes] = {
 }
 
 
+@pytest.mark.fault(21)
+@pytest.mark.fault(31)
 @pytest.mark.parametrize("text", TEXTS)
 @pytest.mark.parametrize("column", COLUMNS)
 def test_a_hostile_text_in_the_database_is_refused_or_escaped(
@@ -297,6 +303,7 @@ def test_a_hostile_text_in_the_database_is_refused_or_escaped(
     assert "{{7*7}}" in written or "alert" not in written
 
 
+@pytest.mark.fault(33)
 @pytest.mark.parametrize(
     "statement",
     [
@@ -338,6 +345,7 @@ def test_replays_that_differ_from_their_record_are_said_to(tiny: Path) -> None:
     assert "Those that differ say so." in page.read_text()
 
 
+@pytest.mark.fault(3)
 def test_ctrl_c_leaves_no_half_of_a_page(tmp_path: Path) -> None:
     """Trials are replayed for seconds; nothing is written until all have been."""
     database = tmp_path / "my.db"

@@ -47,6 +47,7 @@ FORBIDDEN = {
 }
 
 
+@pytest.mark.fault(30)
 @pytest.mark.parametrize("query", FORBIDDEN.values(), ids=FORBIDDEN.keys())
 def test_all_but_one_select_is_refused(query: str | bytes, learned: Path) -> None:
     before = learned.read_bytes()
@@ -64,6 +65,7 @@ ENDLESS = {
 }
 
 
+@pytest.mark.fault(30)
 @pytest.mark.parametrize("query", ENDLESS.values(), ids=ENDLESS.keys())
 def test_an_endless_query_is_stopped(query: str, learned: Path) -> None:
     began = time.monotonic()
@@ -72,6 +74,7 @@ def test_an_endless_query_is_stopped(query: str, learned: Path) -> None:
     assert line.endswith("sql: stopped after 2 s; ask for less (where, limit)")
 
 
+@pytest.mark.fault(30)
 @pytest.mark.parametrize("query", ["select zeroblob(1000000000)", "select hex(zeroblob(900000))"])
 def test_a_huge_value_is_refused(query: str, learned: Path) -> None:
     assert "sql: a value of more than " in refused(4, "sql", query, "--db", learned)
@@ -84,6 +87,7 @@ def test_of_very_many_rows_the_first_are_shown(learned: Path) -> None:
     assert ended.err == "only the first 10000 rows are shown; add a limit or a where\n"
 
 
+@pytest.mark.fault(33)
 def test_json_of_every_kind_of_value(learned: Path) -> None:
     query = """select 1 as a, 2.5 as b, 'x' as c, null as d, x'00ff' as e, 9e999 as f, -9e999 as g,
         9e999 - 9e999 as h, 9223372036854775807 as i, char(27, 0, 10) as j, 'ä' as k"""
@@ -98,6 +102,7 @@ def test_columns_of_one_name_are_told_apart(learned: Path) -> None:
     assert row == {"a": 1, "a 2": 2, "a 2 2": 3, "a 3": 4}
 
 
+@pytest.mark.fault(21)
 def test_control_characters_are_shown_escaped(learned: Path) -> None:
     query = """select 'red' || char(27) || '[31m' as a, 'x' || char(0) || 'y' as b,
         'one' || char(10) || 'two' as 'c\x1b[0m\n', '[/]' as d, char(8238) || 'x' as e,
@@ -144,6 +149,7 @@ def query(text: str, database: Path) -> list[dict[str, object]]:
     return value
 
 
+@pytest.mark.fault(22)
 def test_injection_is_inert(learned: Path) -> None:
     """A name made of SQL is a name, wherever it stands."""
     evil = "x'); DROP TABLE learning_run; --"

@@ -243,6 +243,7 @@ def test_a_file_is_written_over_by_force(folder: Path) -> None:
     assert names_in(folder) == before
 
 
+@pytest.mark.fault(4)
 @pytest.mark.parametrize("ending", ["csv", "json", "parquet"])
 def test_on_a_full_disk_no_file_is_left_and_none_is_promised(
     ending: str, learned: Path, tmp_path: Path
@@ -295,6 +296,7 @@ def test_without_pyarrow_parquet_alone_is_missed(learned: Path, tmp_path: Path) 
 TEXT = ("tool", "binding_behavior", "binding_params", "exploratory_behavior", "exploratory_params")
 
 
+@pytest.mark.fault(32)
 @pytest.mark.parametrize("text", EVIL.values(), ids=EVIL.keys())
 def test_words_in_the_database_come_out_inert_and_whole(
     text: str, learned: Path, tmp_path: Path
@@ -330,6 +332,7 @@ def test_what_affcli_did_not_write_is_named(form: str, learned: Path, tmp_path: 
     assert names_in(tmp_path) == [learned.name]
 
 
+@pytest.mark.fault(33)
 def test_a_number_that_is_not_finite_is_null_in_json_alone(learned: Path, tmp_path: Path) -> None:
     tamper(learned, "UPDATE affordance SET start_object_z = 9e999, end_object_z = -9e999")
     (row,) = json.loads(exported(learned, "--limit", "1", "--format", "json"))
@@ -341,6 +344,7 @@ def test_a_number_that_is_not_finite_is_null_in_json_alone(learned: Path, tmp_pa
     assert pq.read_table(path)["end_object_z"].to_pylist() == [-float("inf")]
 
 
+@pytest.mark.fault(32)
 def test_sql_as_csv(learned: Path) -> None:
     query = """select 1 as a, -2.5 as b, 'x,"y"' as c, null as d, x'00ff' as e, 9e999 as f,
         '=1+1' as g, '-1' as '=h', '' as i, char(10) || 'ä' as j, 0.1 + 0.2 as k, 7 as a"""
@@ -364,6 +368,7 @@ def test_sql_as_csv_says_what_else_there_is_to_say(learned: Path) -> None:
     assert line == "affcli: give --json or --csv, not both"
 
 
+@pytest.mark.fault(21)
 def test_a_terminal_gets_no_command_of_the_data(learned: Path, tmp_path: Path) -> None:
     """A file gets the data as they are."""
     query = "select 'red' || char(27) || '[31m' || char(13) || 'x' || char(7) as a"

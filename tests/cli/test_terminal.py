@@ -47,6 +47,7 @@ def shell(command: str, database: Path) -> Ended:
     return Ended(ended.returncode, ended.stdout, ended.stderr)
 
 
+@pytest.mark.fault(35)
 @pytest.mark.parametrize(
     "command",
     [
@@ -66,12 +67,14 @@ def test_a_reader_who_has_seen_enough_is_no_failure(command: str, used: Path) ->
     assert len(ended.out.splitlines()) <= 1
 
 
+@pytest.mark.fault(35)
 def test_trials_are_done_to_the_end_though_nobody_reads(learned: Path) -> None:
     shell("affcli solve --goal 1 --explain --db FILE | true", learned)
     report = done("report", "--json", "--db", learned).json
     assert sum(cell["tried"] for cell in report["solved"]) == 8
 
 
+@pytest.mark.fault(35)
 def test_closed_streams_are_written_to_in_vain(used: Path) -> None:
     ended = shell("affcli report --db FILE >&-", used)
     assert (ended.code, ended.out, ended.err) == (0, "", "")
@@ -102,6 +105,7 @@ def test_what_an_encoding_lacks_is_shown_escaped(encoding: str, used: Path) -> N
     assert executed("report", "--db", used, PYTHONIOENCODING=encoding).code == 0
 
 
+@pytest.mark.fault(35)
 @pytest.mark.parametrize("columns", [80, 40])
 @pytest.mark.parametrize("args", SHOWING.values(), ids=SHOWING.keys())
 def test_nothing_is_wider_than_the_screen_or_cut_off(
@@ -128,6 +132,7 @@ def test_an_absurd_width_is_no_trouble(columns: str, used: Path) -> None:
         assert max(map(len, out.splitlines())) <= NARROWEST
 
 
+@pytest.mark.fault(35)
 def test_without_a_terminal_there_are_no_escapes(used: Path) -> None:
     for args in SHOWING.values():
         ended = affcli(*args, "--db", used, TERM="xterm-256color")
@@ -157,6 +162,7 @@ def test_results_go_to_stdout_alone(tmp_path: Path) -> None:
     assert run["behaviors"] == 1200
 
 
+@pytest.mark.fault(35)
 def test_colors_are_for_those_who_want_them(used: Path) -> None:
     explain = ("solve", "--goal", "1", "--tool", "stick", "--start", "1", "--explain", "--db", used)
     code, shown = on_terminal(*explain)
@@ -177,6 +183,7 @@ def test_a_dumb_terminal_gets_no_bar(tmp_path: Path) -> None:
     assert "Run 1: what the stick affords, by behavior\n" in shown
 
 
+@pytest.mark.fault(21)
 def test_markup_in_names_is_only_text(tmp_path: Path) -> None:
     name = "[bold red]x[].db"
     done("learn", "--tool", "stick", "--behaviors", "5", "--db", name, cwd=tmp_path)

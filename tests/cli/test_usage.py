@@ -95,6 +95,7 @@ def test_a_number_out_of_range_is_bad_input(args: tuple[str, ...], tmp_path: Pat
     assert names_in(tmp_path) == []
 
 
+@pytest.mark.fault(36)
 @pytest.mark.parametrize("command", SEEDED, ids=lambda command: command[0])
 @pytest.mark.parametrize("seed", ["-1", str(2**63), str(10**40)])
 def test_a_seed_lies_in_0_to_2_63_minus_1(
@@ -123,6 +124,9 @@ STRANGE = {
 }
 
 
+@pytest.mark.fault(20)
+@pytest.mark.fault(21)
+@pytest.mark.fault(22)
 @pytest.mark.parametrize("name", STRANGE.values(), ids=STRANGE.keys())
 def test_a_strange_name_is_one_printable_line(name: str | bytes, tmp_path: Path) -> None:
     strange = (("learn", "--tool", name), ("solve", "--goal", "1", "--start", name))
@@ -131,6 +135,7 @@ def test_a_strange_name_is_one_printable_line(name: str | bytes, tmp_path: Path)
     assert names_in(tmp_path) == []
 
 
+@pytest.mark.fault(21)
 @pytest.mark.parametrize("name", ["[/]", "\x1b[31mred", b"\xff", "x" * 10_000])
 def test_a_strange_command_or_option_is_one_printable_line(
     name: str | bytes, tmp_path: Path

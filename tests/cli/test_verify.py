@@ -172,6 +172,7 @@ def test_a_table_can_be_verified_while_another_process_writes(learned: Path) -> 
         assert value["tries"] == 5
 
 
+@pytest.mark.fault(1)
 @pytest.mark.parametrize("_try", range(2))
 def test_killed_while_updating_counters_and_tries_are_together(learned: Path, _try: int) -> None:
     """Whenever it is killed."""
@@ -187,6 +188,7 @@ def test_killed_while_updating_counters_and_tries_are_together(learned: Path, _t
     assert rows(learned, USES) == rows(learned, TRIES)
 
 
+@pytest.mark.fault(3)
 def test_stopped_it_keeps_what_was_saved(learned: Path) -> None:
     with started(*verify(learned, "--update", "--rows", "5000")) as process:
         wait_until(lambda: tries(learned) > 0, process)
@@ -197,6 +199,7 @@ def test_stopped_it_keeps_what_was_saved(learned: Path) -> None:
     done("db", "check", "--db", learned)
 
 
+@pytest.mark.fault(6)
 def test_two_at_once_never_count_what_they_did_not_see(learned: Path) -> None:
     """The second to change a row's counters is told so; what it saved before is kept."""
     both = side_by_side(2, *verify(learned, "--update", "--rows", "40"))

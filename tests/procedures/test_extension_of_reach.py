@@ -198,6 +198,7 @@ def test_a_row_that_has_succeeded_before_gets_a_second_chance() -> None:
     assert trial.end.outcome is Outcome.NO_ROW
 
 
+@pytest.mark.fault(29)
 @pytest.mark.parametrize(("behaviors", "taken"), [(0, 0), (3, 3)])
 def test_a_simulation_that_diverges_makes_the_trial_invalid(behaviors: int, taken: int) -> None:
     """Neither solved nor failed; the steps taken before it are told."""
@@ -207,6 +208,7 @@ def test_a_simulation_that_diverges_makes_the_trial_invalid(behaviors: int, take
     assert trial.end.steps == taken
 
 
+@pytest.mark.fault(29)
 def test_a_diverging_behavior_does_not_count_as_a_use_of_its_row() -> None:
     table = table_of(AHEAD_5)
     Trial(table, effect=diverging_after(2))

@@ -77,6 +77,7 @@ def test_it_reads_back_to_the_same_cells_but_for_the_apostrophes(table: Table) -
         assert cell == wanted or (isinstance(value, str) and cell == f"'{wanted}")
 
 
+@pytest.mark.fault(32)
 @given(tables())
 def test_an_apostrophe_stands_where_text_would_be_executed_and_nowhere_else(table: Table) -> None:
     for cell, value in beside(table):
@@ -95,6 +96,7 @@ def split_as_a_spreadsheet(text: str) -> list[str]:
     return [one[1:-1].replace('""', '"') if one.startswith('"') else one for one in found]
 
 
+@pytest.mark.fault(32)
 @given(tables())
 def test_no_cell_begins_in_the_middle_of_another(table: Table) -> None:
     """Whatever the reader takes for a delimiter, and for the end of a line."""
@@ -114,6 +116,7 @@ def bits(value: float) -> bytes:
     return b"NaN" if math.isnan(value) else struct.pack("d", value)
 
 
+@pytest.mark.fault(32)
 @given(st.lists(st.tuples(st.floats(), st.integers(-(2**63), 2**63 - 1)), min_size=1, max_size=5))
 def test_numbers_read_back_to_the_bit(rows: list[tuple[float, int]]) -> None:
     """Negative ones too: they are left alone. By Python, and by a reader like that of pandas."""

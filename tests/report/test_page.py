@@ -172,6 +172,7 @@ def test_each_row_can_be_led_to_once() -> None:
     assert {f"row-{number}" for number in ROWS} <= set(identities)
 
 
+@pytest.mark.fault(31)
 @pytest.mark.parametrize("robots", [None, MANY_ROBOTS])
 def test_whatever_is_put_into_it_is_escaped(robots: Any) -> None:
     evil = replace(learned(), settings=HOSTILE)
@@ -193,6 +194,7 @@ def test_whatever_is_put_into_it_is_escaped(robots: Any) -> None:
     assert data_in(page)["first"] in range(4)
 
 
+@pytest.mark.fault(31)
 def test_text_in_the_data_cannot_leave_it() -> None:
     """A tool of such a name the command refuses; the page does not rely on that."""
     evil = "</script><script>alert(1)</script>\u2028"

@@ -33,6 +33,7 @@ def test_a_copy_holds_what_the_database_holds(store: Store, tmp_path: Path) -> N
         assert copy.learning_runs() == store.learning_runs()
 
 
+@pytest.mark.fault(18)
 def test_a_copy_taken_while_others_write_is_of_one_moment(database: Path, tmp_path: Path) -> None:
     """Fault 18: a run saves chunk after chunk meanwhile; counts and chunks agree in every copy."""
     with open_store(database, create=False, write=True) as store:
@@ -58,6 +59,7 @@ def test_a_copy_taken_while_others_write_is_of_one_moment(database: Path, tmp_pa
     assert seen == sorted(seen)  # type: ignore[type-var]
 
 
+@pytest.mark.fault(10)
 def test_before_an_upgrade_a_copy_is_made_and_named(tmp_path: Path) -> None:
     old = Path(shutil.copy(OLD, tmp_path / "old.db"))
     old.chmod(0o644)
@@ -73,6 +75,7 @@ def test_before_an_upgrade_a_copy_is_made_and_named(tmp_path: Path) -> None:
     assert told[1] == tmp_path / "old.db.0001-2.backup"
 
 
+@pytest.mark.fault(10)
 def test_when_a_migration_fails_the_copy_was_named_before_and_opens(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -113,6 +116,7 @@ def test_where_no_copy_can_be_written_none_is(database: Path, tmp_path: Path) ->
         backup(database, tmp_path / "nowhere" / "copy.db")
 
 
+@pytest.mark.fault(4)
 def test_on_a_full_disk_what_stood_there_is_kept(store: Store, tmp_path: Path) -> None:
     learned(store, 60)
     copy = tmp_path / "copy.db"

@@ -12,6 +12,7 @@ from tests.factories import learning_spec
 from tests.store.records import NOW, VERSIONS, learned, learning_steps
 
 
+@pytest.mark.fault(4)
 def test_a_full_disk_loses_only_the_chunk_that_did_not_fit(database: Path) -> None:
     spec = learning_spec(behaviors=4000)
     with open_store(database, create=False, write=True) as store:
@@ -29,6 +30,7 @@ def test_a_full_disk_loses_only_the_chunk_that_did_not_fit(database: Path) -> No
     assert sound(database)
 
 
+@pytest.mark.fault(4)
 def test_a_file_that_may_not_grow_is_reported_too(database: Path) -> None:
     """A quota or ulimit is not ENOSPC; SQLite calls it an I/O error."""
     with open_store(database, create=False, write=True) as store:

@@ -120,6 +120,7 @@ def test_an_older_schema_is_not_upgraded_unasked(database: Path, later_code: Pat
     assert database.read_bytes() == before
 
 
+@pytest.mark.fault(10)
 def test_a_migration_that_fails_leaves_the_old_schema(database: Path, later_code: Path) -> None:
     before = schema(database)
     broken = later_code / "versions" / f"{LATER}_next.py"

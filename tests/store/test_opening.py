@@ -48,6 +48,7 @@ def refused(way: Way, path: Path, words: str) -> None:
     assert names_in(path.parent) == [path.name]
 
 
+@pytest.mark.fault(15)
 @pytest.mark.parametrize("way", READING)
 def test_a_missing_file_is_not_made_by_reading(way: Way, tmp_path: Path) -> None:
     with pytest.raises(DatabaseError, match="no database there; `affcli learn` makes one"):
@@ -61,6 +62,7 @@ def test_a_missing_file_is_made_by_writing(tmp_path: Path) -> None:
     assert names_in(tmp_path) == ["new.db"]
 
 
+@pytest.mark.fault(14)
 def test_an_empty_file_is_initialised_by_writing(tmp_path: Path) -> None:
     path = tmp_path / "empty.db"
     path.touch()
@@ -68,6 +70,7 @@ def test_an_empty_file_is_initialised_by_writing(tmp_path: Path) -> None:
     assert database_info(path).counts["learning runs"] == 1
 
 
+@pytest.mark.fault(14)
 @pytest.mark.parametrize("way", READING)
 def test_an_empty_file_stays_empty_when_read(way: Way, tmp_path: Path) -> None:
     path = tmp_path / "empty.db"
@@ -75,6 +78,7 @@ def test_an_empty_file_stays_empty_when_read(way: Way, tmp_path: Path) -> None:
     refused(way, path, "an empty file")
 
 
+@pytest.mark.fault(13)
 @pytest.mark.parametrize("way", EVERY_WAY)
 @pytest.mark.parametrize(
     "content", [b"x", b"not a database\n" * 500, b"\0" * 4096, os.urandom(999)]
@@ -85,6 +89,7 @@ def test_what_is_no_database_is_refused(way: Way, content: bytes, tmp_path: Path
     refused(way, path, "not a SQLite database")
 
 
+@pytest.mark.fault(13)
 @pytest.mark.parametrize("way", EVERY_WAY)
 def test_a_truncated_database_is_refused(way: Way, database: Path) -> None:
     write(database)
@@ -94,6 +99,7 @@ def test_a_truncated_database_is_refused(way: Way, database: Path) -> None:
         refused(way, database, "damaged|not a SQLite database")
 
 
+@pytest.mark.fault(13)
 @pytest.mark.parametrize("way", [read, write, query])
 def test_a_flipped_page_is_found(way: Way, database: Path) -> None:
     write(database)
@@ -106,6 +112,7 @@ def test_a_flipped_page_is_found(way: Way, database: Path) -> None:
         refused(way, database, "damaged|not a SQLite database|another program")
 
 
+@pytest.mark.fault(14)
 @pytest.mark.parametrize("way", EVERY_WAY)
 @pytest.mark.parametrize(
     "statement",
@@ -130,6 +137,7 @@ def stand_at(database: Path, revision: str) -> None:
     driver.close()
 
 
+@pytest.mark.fault(11)
 @pytest.mark.parametrize("way", [read, write, query, upgrade])
 @pytest.mark.parametrize("revision", ["0099", "ae1027a6acf", "9" * 5000, ""])
 def test_a_schema_from_the_future_is_refused(way: Way, revision: str, database: Path) -> None:
@@ -189,6 +197,7 @@ def test_only_a_file_can_be_a_database(way: Way, tmp_path: Path) -> None:
             way(path)
 
 
+@pytest.mark.fault(21)
 @pytest.mark.parametrize("way", EVERY_WAY)
 @pytest.mark.parametrize("name", ["nul\0byte.db", "lone\ud800surrogate.db", "x" * 5000, "a/b/c.db"])
 def test_impossible_paths_are_refused_in_one_line(way: Way, name: str, tmp_path: Path) -> None:

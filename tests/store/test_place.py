@@ -20,6 +20,7 @@ def facts(path: Path) -> dict[str, Fact]:
     return {fact.what: fact for fact in place_facts(path)}
 
 
+@pytest.mark.fault(17)
 @pytest.mark.parametrize(
     ("folder", "kind"),
     [("/var", "ext4"), ("/home/me", "nfs4"), ("/home/local/me", "xfs"), ("/mnt/the lab/x", "cifs")],
@@ -36,6 +37,7 @@ def test_here_all_is_well(database: Path) -> None:
     assert not any(fact.remedy for fact in found.values())
 
 
+@pytest.mark.fault(17)
 def test_a_network_file_system_is_pointed_out(
     database: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -45,6 +47,7 @@ def test_a_network_file_system_is_pointed_out(
     assert "keep the database on a local disk" in found.remedy
 
 
+@pytest.mark.fault(17)
 def test_a_write_ahead_log_that_this_sqlite_cannot_be_trusted_with(
     database: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -24,6 +24,7 @@ def integrity(path: Path) -> str:
     return str(finding)
 
 
+@pytest.mark.fault(8)
 def test_eight_first_runs_at_once_make_one_schema(tmp_path: Path) -> None:
     path = tmp_path / "new.db"
     with ExitStack() as stack:
@@ -39,6 +40,7 @@ def test_eight_first_runs_at_once_make_one_schema(tmp_path: Path) -> None:
     assert integrity(path) == "ok"
 
 
+@pytest.mark.fault(9)
 def test_a_kill_during_a_migration_leaves_the_old_schema_or_the_new(tmp_path: Path) -> None:
     code, out, err = finished("killed_while_migrating", tmp_path / "killed.db")
     assert (code, err) == (0, "")
@@ -50,6 +52,7 @@ def test_a_kill_during_a_migration_leaves_the_old_schema_or_the_new(tmp_path: Pa
     assert int(deaths[-1][2]) > 10
 
 
+@pytest.mark.fault(5)
 def test_a_lock_held_too_long_says_who_holds_it(database: Path) -> None:
     with (
         child("hold_write_lock", database) as other,
@@ -58,7 +61,7 @@ def test_a_lock_held_too_long_says_who_holds_it(database: Path) -> None:
         began = time.monotonic()
         with pytest.raises(DatabaseError) as caught:
             learned(store)
-        assert time.monotonic() - began < 5
+        assert time.monotonic() - began < 10.0
         message = str(caught.value)
         assert "locked for more than 0.1 s by" in message
         assert "wait until it is done" in message
@@ -67,6 +70,7 @@ def test_a_lock_held_too_long_says_who_holds_it(database: Path) -> None:
         assert store.learning_runs() == ()  # a writer does not keep readers out
 
 
+@pytest.mark.fault(5)
 def test_a_lock_given_back_in_time_is_waited_for(database: Path) -> None:
     with (
         open_store(database, create=False, write=True) as store,
@@ -77,6 +81,7 @@ def test_a_lock_given_back_in_time_is_waited_for(database: Path) -> None:
     assert database_info(database).counts["behaviors"] == 9
 
 
+@pytest.mark.fault(3)
 def test_ctrl_c_is_heard_while_waiting_for_a_lock(database: Path) -> None:
     with (
         child("hold_write_lock", database),
@@ -86,10 +91,11 @@ def test_ctrl_c_is_heard_while_waiting_for_a_lock(database: Path) -> None:
         began = time.monotonic()
         waiting.send_signal(signal.SIGINT)
         _, err = waiting.communicate(timeout=20)
-        assert time.monotonic() - began < 2
+        assert time.monotonic() - began < 10.0  # five times what a person is promised
     assert "KeyboardInterrupt" in err
 
 
+@pytest.mark.fault(7)
 def test_a_writer_waits_for_a_reader_and_loses_nothing(database: Path) -> None:
     with open_store(database, create=False, write=True, timeout=0.1) as hasty:
         with child("hold_read_lock", database) as reader:
@@ -111,6 +117,7 @@ def test_a_writer_waits_for_a_reader_and_loses_nothing(database: Path) -> None:
     assert integrity(database) == "ok"
 
 
+@pytest.mark.fault(6)
 def test_two_processes_may_compute_the_same_run(database: Path) -> None:
     with ExitStack() as stack:
         both = [stack.enter_context(child("append_in_chunks", database)) for _ in range(2)]
@@ -130,6 +137,7 @@ def test_two_processes_may_compute_the_same_run(database: Path) -> None:
     assert stored.rows == ((120, 120, 120),)
 
 
+@pytest.mark.fault(1)
 @pytest.mark.parametrize("first", ["store", "sql"])
 def test_after_a_kill_the_file_is_set_right_by_whoever_reads_it(first: str, database: Path) -> None:
     with open_store(database, create=False, write=True) as store:
@@ -164,6 +172,7 @@ MAY_BE_WRITTEN = {  # file, folder
 }
 
 
+@pytest.mark.fault(16)
 def test_reading_needs_no_write_permission(
     public_folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -1,0 +1,76 @@
+"""Damaged pages: found when the file is opened, or in a large one when they are read."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from affcli.errors import DatabaseError
+from affcli.store import Store, check, open_store
+from affcli.store.database_file import CHECKED_UP_TO
+from tests.factories import learning_spec
+from tests.store.records import learned
+
+PAGE = 4096
+
+
+def answers(store: Store) -> tuple[object, ...]:
+    """Return what a report asks a database for."""
+    runs = store.learning_runs()
+    groups = [store.behavior_groups(run.id) for run in runs]
+    tables = [list(store.affordance_table(run.id)[0]) for run in runs]
+    return runs, groups, tables
+
+
+@pytest.fixture
+def large(store: Store) -> Path:
+    """A database that is too large to be checked whether it is opened."""
+    for seed in range(3):
+        learned(store, spec=learning_spec(seed=seed, behaviors=6000), count=6000)
+    assert store.path.stat().st_size > CHECKED_UP_TO
+    return store.path
+
+
+@pytest.mark.fault(13)
+@pytest.mark.torture
+def test_a_flipped_page_of_a_large_file_is_found_or_does_not_matter(
+    large: Path, torture: bool, tell: Callable[[str], None]
+) -> None:
+    """A reader gets the right answer or is told that the file is damaged; and `check` finds it."""
+    with open_store(large, create=False, write=False) as sound:
+        right = answers(sound)
+    whole = large.read_bytes()
+    pages = range(0, len(whole) // PAGE, 1 if torture else 97)
+    noticed = found = 0
+    for page in pages:
+        place = slice(PAGE * page, PAGE * (page + 1))
+        flipped = bytearray(whole)
+        flipped[place] = bytes(255 - byte for byte in whole[place])
+        large.write_bytes(flipped)
+        noticed += not reads(large, right)
+        found += damage_is_found(large)
+        assert large.read_bytes() == flipped
+    assert found == len(pages)
+    assert noticed
+    tell(
+        f"{len(pages)} pages flipped one by one, {found} found by the check, {noticed} by a report"
+    )
+
+
+def reads(path: Path, right: tuple[object, ...]) -> bool:
+    """Tell whether the right answers come; false when damage is told of instead."""
+    try:
+        with open_store(path, create=False, write=False) as store:
+            got = answers(store)
+    except DatabaseError:
+        return False
+    assert got == right
+    return True
+
+
+def damage_is_found(path: Path) -> bool:
+    """Tell whether the check of the whole file finds something."""
+    try:
+        return any(finding.wrong for finding in check(path))
+    except DatabaseError:
+        return True
