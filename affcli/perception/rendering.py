@@ -24,6 +24,8 @@ Picture = NDArray[np.uint8]
 
 FINE = 4
 """Shapes are drawn this many times finer than the picture, so their edges are anti-aliased."""
+FARTHEST = 2.0**20
+"""Pixels of the fine picture beyond which nothing is drawn: OpenCV's numbers end at 2**25."""
 FRACTION_BITS = 6
 """Corners are drawn to 1/64 of such a fine pixel."""
 MARGIN = 4
@@ -190,7 +192,8 @@ class Renderer:
 
 def _fill(picture: Picture, corners: Array, color: tuple[float, float, float]) -> None:
     """Fill a polygon whose corners (n, 2) are given in pixels of the picture that is not fine."""
-    fine = (corners + 0.5) * FINE - 0.5
+    # Of a table of miles a corner may lie where the lens's model has no place for it.
+    fine = np.nan_to_num(np.clip((corners + 0.5) * FINE - 0.5, -FARTHEST, FARTHEST), nan=FARTHEST)
     fixed = np.rint(fine * 2**FRACTION_BITS).astype(np.int32)
     cv2.fillPoly(picture, [fixed], color, cv2.LINE_8, FRACTION_BITS)
 

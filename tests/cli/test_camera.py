@@ -343,3 +343,10 @@ def test_without_its_packages_no_trial_through_the_camera_is_begun(
     ended = without(package, *command, "--sensor", "camera", "--db", learned)
     assert ended == Ended(2, "", f"{INSTALL}\n")
     assert rows(learned, "SELECT count(*) FROM session") == before
+
+
+def test_a_table_of_miles_is_drawn_without_a_warning(tmp_path: Path) -> None:
+    """Its corners lie where the model of the lens has no place for them."""
+    config = tmp_path / "miles.toml"
+    config.write_text("table.far = 316000\ntools.handle_length = 1460\ncamera.height = 39\n")
+    assert "no markers found" in refused(4, "camera", "calibrate", "--config", config)
