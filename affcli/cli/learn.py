@@ -6,7 +6,6 @@ import typer
 
 from affcli.cli.options import (
     DEFAULT_DATABASE,
-    MOST_BEHAVIORS,
     AsJson,
     Config,
     Database,
@@ -21,6 +20,7 @@ from affcli.cli.options import (
 )
 from affcli.cli.terminal import now, progress, say, show, show_json
 from affcli.core.tool import TOOL_PARTS
+from affcli.core.trial import MOST_BEHAVIORS
 from affcli.errors import UsageError
 
 if TYPE_CHECKING:

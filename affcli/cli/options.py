@@ -11,12 +11,10 @@ import typer
 from affcli.core.observation import SENSOR_KINDS, SensorKind
 from affcli.core.task import GOAL_NUMBERS, START_NUMBERS
 from affcli.core.tool import TOOL_PARTS
+from affcli.core.trial import LARGEST_SEED, LONGEST_HOURS
 from affcli.errors import BadInputError, UsageError, one_line
 
-LARGEST_SEED = LARGEST_ID = 2**63 - 1
-LONGEST_HOURS = 10_000.0
-MOST_BEHAVIORS = 10_000_000
-MOST_ROBOTS = 100_000
+LARGEST_ID = LARGEST_SEED
 MOST_TRIES = 100_000
 MOST_WORKERS = 256
 SHORTEST, LONGEST = 1e-3, 1e4

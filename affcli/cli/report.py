@@ -10,13 +10,13 @@ from affcli.cli.files import require_new, save
 from affcli.cli.options import (
     DEFAULT_DATABASE,
     LARGEST_ID,
-    MOST_ROBOTS,
     AsJson,
     Database,
     Force,
     checked_count,
 )
 from affcli.cli.terminal import progress, say, show, show_json
+from affcli.core.trial import MOST_ROBOTS
 from affcli.errors import BadInputError, UsageError, one_line
 
 Html = Annotated[

@@ -7,7 +7,6 @@ import typer
 
 from affcli.cli.options import (
     DEFAULT_DATABASE,
-    MOST_ROBOTS,
     MOST_WORKERS,
     AsJson,
     Config,
@@ -20,6 +19,7 @@ from affcli.cli.options import (
     checked_sensor,
 )
 from affcli.cli.terminal import now, progress, say, show, show_json
+from affcli.core.trial import MOST_ROBOTS
 
 FEW_ROBOTS = 20
 

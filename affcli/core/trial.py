@@ -9,6 +9,11 @@ from affcli.core.behavior import Execution
 from affcli.core.geometry import Pose
 from affcli.core.observation import Movement, Observation, SensorKind
 
+LARGEST_SEED = 2**63 - 1
+LONGEST_HOURS = 10_000.0
+MOST_BEHAVIORS = 10_000_000
+MOST_ROBOTS = 100_000
+
 
 class Truth(NamedTuple):
     """Where the attractor truly was before and after a behavior; never for the robot."""

@@ -17,6 +17,8 @@ from affcli.simulation.world import World
 
 LEARNING, TRIAL, VERIFICATION, PREDICTION = 0, 1, 3, 4
 """First word of a random stream's key: what it is for. 2 is a camera's power-up (`lab.sensing`)."""
+STREAMS = ("choices", "noise", "hand")
+"""The random streams of a bench."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,10 +56,9 @@ class Bench:
         """
         workspace = settings.workspace
         sequence = np.random.SeedSequence((purpose, seed, robot, *words))
-        names = ("choices", "noise", "hand")
         streams = {
             name: np.random.Generator(np.random.PCG64(child))
-            for name, child in zip(names, sequence.spawn(len(names)), strict=True)
+            for name, child in zip(STREAMS, sequence.spawn(len(STREAMS)), strict=True)
         }
         behaviors = paper_behaviors(workspace.arm, workspace.motion, workspace.tools)
         return cls(

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from affcli.config import settings_from_json, with_sensor
 from affcli.core.observation import SensorKind
 from affcli.core.trial import Protocol, TrialRecord
+from affcli.lab.plausible import check_starts, learned_table
 from affcli.lab.sensing import calibration_of
 from affcli.lab.trials import LostAffordances, trial_specs, whole_trial
 from affcli.lab.versions import versions
@@ -40,9 +41,11 @@ def break_tool(
     # A camera that is not there, or cannot be calibrated, is found before anything is recorded.
     calibration_of(settings, seed, run.spec.robot)
     kind = settings.sensor.kind
-    table, ids = store.affordance_table(run.id, as_learned=True)
+    table, ids = learned_table(store, run, settings, as_learned=True)
     world = World(settings.workspace, settings.physics)
-    lost = LostAffordances(settings, shape, store.row_starts(run.id))
+    starts = store.row_starts(run.id)
+    check_starts(run.id, starts, table)
+    lost = LostAffordances(settings, shape, starts)
     text = settings.to_json()
     session = store.begin_session("break-tool", seed, 1, text, versions(kind), now())
     tool, robot = run.spec.tool, run.spec.robot

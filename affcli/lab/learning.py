@@ -9,6 +9,7 @@ from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Observation
 from affcli.core.trial import BabblingRecord, LearningSpec, Truth
 from affcli.lab.bench import LEARNING, Bench, stable_number, tool_named
+from affcli.lab.plausible import check_checkpoint, not_written
 from affcli.lab.sensing import calibration_of
 from affcli.lab.versions import versions
 from affcli.procedures.babbling import BabblingState, babble
@@ -135,7 +136,7 @@ def learn(
     info = store.begin_learning(spec, made_with, now())
     new = False
     while info.status != "done":
-        run = LearningRun(spec, info.checkpoint)
+        run = _gone_on_with(info)
         for chunk in _chunks(run.steps()):
             new = True
             saved = store.append_learning(
@@ -154,6 +155,15 @@ def learn(
             if not saved:
                 break
     return Learned(info, new)
+
+
+def _gone_on_with(info: LearningRunInfo) -> LearningRun:
+    """Return a run that is not done, as far as it came."""
+    check_checkpoint(info)
+    run = LearningRun(info.spec, info.checkpoint)
+    if run.done:  # and not marked so: there would be no end to it
+        raise not_written(f"learning run {info.id}")
+    return run
 
 
 def _chunks(

@@ -10,6 +10,7 @@ from affcli.core.observation import Movement, SensorKind, movement
 from affcli.core.trial import BabblingRecord
 from affcli.errors import UsageError
 from affcli.lab.bench import PREDICTION, Bench, stable_number, tool_named
+from affcli.lab.plausible import learned_table
 from affcli.planning.prediction import TablePredictor
 from affcli.procedures.babbling import BabblingState, babble
 from affcli.report.prediction import LEARNED_FROM, Foretold, Push
@@ -150,7 +151,7 @@ def predict(store: Store, run: LearningRunInfo, spec: PredictionSpec) -> Iterato
         Each push with what was foretold of it.
     """
     settings = settings_from_json(run.spec.settings)
-    table, _ = store.affordance_table(run.id)
+    table, _ = learned_table(store, run, settings)
     oracle = Oracle([row for row in table if row.replication_probability > 0.5])
     for record in fresh_pushes(spec, settings):
         yield oracle.push(record)

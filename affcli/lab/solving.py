@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from affcli.config import settings_from_json, with_sensor
 from affcli.core.observation import SensorKind
 from affcli.core.trial import Counters, Outcome, Protocol, StepRecord, TrialEnd, TrialSpec
+from affcli.lab.plausible import learned_table
 from affcli.lab.sensing import calibration_of
 from affcli.lab.trials import Ended, run_trial
 from affcli.lab.versions import versions
@@ -94,7 +95,7 @@ def solve(
                 counters=Counters.STORED,
                 sensor=settings.sensor.kind,
             )
-            table, ids = store.affordance_table(run.id)
+            table, ids = learned_table(store, run, settings)
             trial = store.begin_trial(session, run.id, spec, calibration)
             steps = Ended(run_trial(spec, settings, table, world))
             for record, truth in steps:

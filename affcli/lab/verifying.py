@@ -16,6 +16,7 @@ from affcli.core.verification import (
 )
 from affcli.errors import UsageError
 from affcli.lab.bench import VERIFICATION, Bench, stable_number, tool_named
+from affcli.lab.plausible import learned_table
 from affcli.lab.sensing import calibration_of
 from affcli.lab.versions import versions
 from affcli.procedures.verification import verify as verify_rows
@@ -118,7 +119,7 @@ def verify(
     settings = settings_from_json(run.spec.settings)
     # A camera that is not there, or cannot be calibrated, is found before anything is recorded.
     calibration = calibration_of(with_sensor(settings, spec.sensor), spec.seed, spec.robot)
-    table, ids = store.affordance_table(run.id)
+    table, ids = learned_table(store, run, settings)
     learned = tool_named(settings, spec.tool)
     number = 0
     if update:

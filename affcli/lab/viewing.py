@@ -12,10 +12,10 @@ from affcli.core.geometry import Pose
 from affcli.core.observation import Observation
 from affcli.core.scene import Scene
 from affcli.core.task import goal_regions, start_positions
-from affcli.core.tool import PUCK_COLOR, TOOL_PARTS
-from affcli.errors import DatabaseError
+from affcli.core.tool import PUCK_COLOR
 from affcli.lab.bench import TRIAL, Bench, tool_named
 from affcli.lab.filming import FRAME_RATE, Reel
+from affcli.lab.plausible import check_scene
 from affcli.lab.sensing import eye_of
 from affcli.simulation.world import World
 
@@ -146,8 +146,7 @@ def scenes_of_step(step: "StepScene", settings: Settings) -> list[Scene]:
 
 def _scene(step: "StepScene", settings: Settings) -> Scene:
     """Return the scene in which a step began."""
-    if not {step.tool, step.shape} <= set(TOOL_PARTS):
-        raise DatabaseError(f"{step.title} holds a tool that affcli does not know")
+    check_scene(step, settings)
     believed = tool_named(settings, step.tool)
     goals = goal_regions(settings.workspace.layout)
     return Scene(

@@ -12,8 +12,9 @@ from pathlib import Path
 
 from affcli.errors import DatabaseError, one_line
 from affcli.store.faults import REMEDIES, faults_named
-from affcli.store.identity import stored_revision
+from affcli.store.identity import REVISION, stored_revision
 from affcli.store.patience import ATTEMPT, patiently
+from affcli.store.schema import mistyped_table
 
 CHECKED_UP_TO = 4 * 2**20
 """Bytes up to which the whole file is checked when it is opened, which takes some 15 ms a megabyte:
@@ -113,6 +114,12 @@ def look(driver: sqlite3.Connection, path: Path, timeout: float) -> str | None:
             patiently(lambda: driver.execute("SELECT 1 FROM sqlite_master"), timeout)
             revision = stored_revision(driver, path)
             _require_sound(driver, path)
+            mistyped = mistyped_table(driver) if revision == REVISION else ""
+            if mistyped:
+                raise DatabaseError(
+                    f"{one_line(path)}: its {mistyped} holds a value that affcli did not write; "
+                    "restore a copy of the file"
+                )
             return revision
         finally:
             if driver.in_transaction:

@@ -18,6 +18,11 @@ INTERRUPTED_WRITE = (
     "write there"
 )
 
+CLASH = (
+    "its records contradict one another, which affcli did not write; `affcli db check` may show "
+    "where; restore a copy of the file"
+)
+
 REMEDIES = {
     sqlite3.SQLITE_READONLY_ROLLBACK: INTERRUPTED_WRITE,
     sqlite3.SQLITE_READONLY_RECOVERY: INTERRUPTED_WRITE,
@@ -32,12 +37,17 @@ REMEDIES = {
     "at free space, quotas and the disk's health, then run the command again",
     sqlite3.SQLITE_CORRUPT: "damaged; restore a copy of the file, or name another with --db",
     sqlite3.SQLITE_NOTADB: "not a SQLite database; name another file with --db",
+    sqlite3.SQLITE_CONSTRAINT_UNIQUE: CLASH,
+    sqlite3.SQLITE_CONSTRAINT_PRIMARYKEY: CLASH,
+    sqlite3.SQLITE_CONSTRAINT_FOREIGNKEY: CLASH,
     sqlite3.SQLITE_NOLFS: "too large for this file system; move it to another",
 }
 """By SQLite's result code. What is not listed is a bug and keeps its traceback."""
 
 NO_TEXT = "Could not decode to UTF-8"
 """What Python's driver says, without a code, of text that is not in UTF-8."""
+NO_KEY = "foreign key mismatch"
+"""What SQLite says, with the code of any error, when a table has lost its primary key."""
 
 
 def result_code(error: BaseException) -> int:
@@ -74,9 +84,10 @@ def faults_named(path: Path, waited: float) -> Iterator[None]:
                 "a copy of the file"
             ) from error
         remedy = REMEDIES.get(code) or REMEDIES.get(code & PRIMARY)
-        # Python's own: SQLite itself does not look into text, and has no code for this.
-        if "Could not decode to UTF-8" in str(getattr(error, "orig", None) or error):
-            remedy = "holds text that is no text, which affcli did not write; restore a copy"
+        if str(getattr(error, "orig", error)).startswith(NO_KEY):
+            remedy = REMEDIES[sqlite3.SQLITE_CORRUPT]
+        if remedy is CLASH:
+            remedy = f"{one_line(getattr(error, 'orig', error))}: {CLASH}"
         if remedy is not None:
             raise DatabaseError(f"{one_line(path)}: {remedy}") from error
         raise

@@ -4,6 +4,7 @@ import sqlite3
 from pathlib import Path
 
 from affcli.errors import DatabaseError, one_line
+from affcli.store.schema import COLUMNS, VIEWS, missing_column
 
 APPLICATION_ID = int.from_bytes(b"affc", "big")
 """``PRAGMA application_id`` of affcli's databases."""
@@ -11,10 +12,7 @@ APPLICATION_ID = int.from_bytes(b"affc", "big")
 REVISION = "0003"
 """The revision of ``migrations/`` that this code reads and writes."""
 
-RELATIONS = frozenset(
-    {"session", "learning_run", "behavior", "affordance", "trial", "step"}
-    | {"verification", "replication", "affordance_table", "affordance_wide"}
-)
+RELATIONS = frozenset({*COLUMNS, *VIEWS})
 """The tables and views of that revision."""
 
 
@@ -36,10 +34,12 @@ def stored_revision(connection: sqlite3.Connection, path: Path) -> str | None:
         )
     missing = "alembic_version"
     if missing in names:
-        revisions = connection.execute("SELECT version_num FROM alembic_version").fetchall()
+        revisions = connection.execute("SELECT * FROM alembic_version").fetchall()
         if len(revisions) == 1:
             revision = str(revisions[0][0])
             missing = min(RELATIONS - names, default="") if revision == REVISION else ""
+            if revision == REVISION and not missing:
+                missing = missing_column(connection)
             if not missing:
                 return revision
     raise DatabaseError(

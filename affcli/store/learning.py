@@ -269,7 +269,7 @@ def info_from(row: sa.RowMapping) -> LearningRunInfo:
         return LearningRunInfo(
             spec=learning_spec_from(row),
             versions=dict(json.loads(row["versions"])),
-            checkpoint=None if row["checkpoint"] is None else json.loads(row["checkpoint"]),
+            checkpoint=None if row["checkpoint"] is None else dict(json.loads(row["checkpoint"])),
             **{
                 name: row[name]
                 for name in (

@@ -12,6 +12,10 @@ from affcli.core.behavior import BehaviorCall, BehaviorName
 from affcli.core.geometry import direction_degrees
 from affcli.core.observation import Observation
 from affcli.core.trial import (
+    LARGEST_SEED,
+    LONGEST_HOURS,
+    MOST_BEHAVIORS,
+    MOST_ROBOTS,
     Attempt,
     BabblingRecord,
     LearningSpec,
@@ -33,6 +37,9 @@ from affcli.store.rows import (
 
 if TYPE_CHECKING:  # a worker that packs a robot's life needs no SQLAlchemy
     from sqlalchemy import RowMapping
+
+MOST = 2**40
+"""Uses of a row: a robot needs longer for more than there are robots for."""
 
 
 def settings_key(settings: str) -> str:
@@ -65,7 +72,10 @@ def reading_what_was_written(place: str) -> Iterator[None]:
     """
     try:
         yield
-    except (ValueError, TypeError, KeyError, AttributeError, OverflowError) as error:
+    except (
+        *(ValueError, TypeError, KeyError, AttributeError, OverflowError),
+        RecursionError,  # JSON nested a thousand deep
+    ) as error:
         raise DatabaseError(
             f"{place} holds a value that affcli did not write; restore a copy of the database"
         ) from error
@@ -135,7 +145,12 @@ def affordance_from(row: "RowMapping | dict[str, Any]", *, as_learned: bool) -> 
     Args:
         row: all columns of an affordance.
         as_learned: give it the counters 1 and 1 of a fresh row, whatever is stored.
+
+    Raises:
+        ValueError: a value is none that affcli writes.
     """
+    if not 0 <= row["times_successful"] <= row["times_used"] or not 0 < row["times_used"] <= MOST:
+        raise ValueError("counters that no uses can give")
     return Affordance(
         step=row["step"],
         binding=behavior_call(row["binding_behavior"], row["binding_params"]),
@@ -149,7 +164,16 @@ def affordance_from(row: "RowMapping | dict[str, Any]", *, as_learned: bool) -> 
 
 
 def learning_spec_from(row: "RowMapping") -> LearningSpec:
-    """Return what a stored learning run is a function of."""
+    """Return what a stored learning run is a function of; ValueError when it can be of none."""
+    hours, behaviors = row["hours"], row["behaviors_limit"]
+    if not (
+        0 <= row["seed"] <= LARGEST_SEED
+        and 0 <= row["robot"] < MOST_ROBOTS
+        and (hours is None or 0.0 < hours <= LONGEST_HOURS)
+        and (behaviors is None or 0 < behaviors <= MOST_BEHAVIORS)
+        and (hours is None) is not (behaviors is None)
+    ):
+        raise ValueError("a seed, a robot, hours or behaviors out of range")
     return LearningSpec(
         tool=row["tool"],
         seed=row["seed"],

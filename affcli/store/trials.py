@@ -8,6 +8,8 @@ from typing import Any, Literal
 import sqlalchemy as sa
 
 from affcli.core.trial import (
+    LARGEST_SEED,
+    MOST_ROBOTS,
     Counters,
     RobotRecord,
     StepRecord,
@@ -284,6 +286,8 @@ def _sessions_like(kind: str, seed: int, robots: int, settings: str) -> sa.Selec
 def _session_info(row: sa.RowMapping) -> SessionInfo:
     """Return what a row of session says."""
     with reading_what_was_written(f"session {row['id']}"):
+        if not (0 <= row["seed"] <= LARGEST_SEED and 0 < row["robots"] <= MOST_ROBOTS):
+            raise ValueError("a seed or a number of robots out of range")
         return SessionInfo(
             versions=json.loads(row["versions"]),
             **{

@@ -326,7 +326,7 @@ def test_before_any_trial_it_says_that_there_is_none(learned: Path) -> None:
     [
         ("affordance SET exploratory_params = 'far'", 3, "holds a value that affcli did not write"),
         ("trial SET seed = -1", 3, "holds a value that affcli did not write"),
-        ("trial SET shape = 'spoon'", 3, "holds a tool that affcli does not know"),
+        ("trial SET shape = 'spoon'", 3, "holds a value that affcli did not write"),
         ("learning_run SET settings = '{'", 4, "the stored settings: "),
         ("learning_run SET settings = '[]'", 4, "the stored settings: no sections in them"),
     ],
@@ -372,3 +372,22 @@ def test_a_stored_step_has_its_own_seed_and_settings(used: Path, tmp_path: Path)
     for own in (("--seed", "3"), ("--config", tmp_path / "x.toml")):
         line = refused(2, "camera", "view", "--db", used, "--trial", "1", "--out", "x.png", *own)
         assert "leave out --seed and --config" in line
+
+
+@pytest.mark.parametrize(
+    "spoilt",
+    [
+        "trial SET goal = 9 WHERE id = 1",
+        "affordance SET exploratory_behavior = 'juggle'",
+        "affordance SET exploratory_behavior = 'position wrist'",
+        """affordance SET exploratory_params = '{"offset_distance": 1e300}'""",
+        "step SET wrist_start_x = 1e300",
+        "step SET true_start_y = 9e999",
+    ],
+)
+def test_a_scene_that_cannot_have_been_is_not_laid_out(spoilt: str, used: Path) -> None:
+    with closing(sqlite3.connect(used)) as driver, driver:
+        driver.execute(f"UPDATE {spoilt}")
+    says = "Trial 1, step 1 of "
+    for out in (("--out", "v.png"), ("--video", "v.avi")):
+        assert says in refused(3, "camera", "view", "--trial", "1", *out, "--db", used)
