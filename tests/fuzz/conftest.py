@@ -1,0 +1,60 @@
+"""What all the fuzzing shares: the program, the folder it works in, and the time there is."""
+
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import strategies as st
+
+from tests.fuzz.budget import fuzz
+from tests.fuzz.places import furnish
+from tests.fuzz.running import Program
+
+Fuzz = Callable[..., None]
+
+
+@pytest.fixture(scope="session")
+def program() -> Iterator[Program]:
+    running = Program()
+    yield running
+    running.close()
+
+
+@pytest.fixture(scope="session")
+def furnished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("furnished")
+    furnish(folder)
+    return folder
+
+
+@pytest.fixture
+def fuzzing(torture: bool, request: pytest.FixtureRequest) -> Fuzz:
+    """Try cases of a kind, and say in the end of the run how many."""
+
+    def run(
+        kind: str,
+        check: Callable[[Any], None],
+        cases: st.SearchStrategy[Any],
+        *,
+        few: int,
+        share: float,
+    ) -> None:
+        tried = fuzz(kind, check, cases, few=few, share=share if torture else None)
+        request.node.user_properties.append(("fuzzed", str(tried)))
+
+    return run
+
+
+@pytest.fixture
+def place(furnished: Path, tmp_path: Path) -> Callable[[], Path]:
+    """Give a fresh copy of the furnished folder, for each case."""
+
+    def fresh() -> Path:
+        outside = tmp_path / "case"
+        shutil.rmtree(outside, ignore_errors=True)
+        (outside / "temporary").mkdir(parents=True)
+        return Path(shutil.copytree(furnished, outside / "home" / "work"))
+
+    return fresh

@@ -1,0 +1,69 @@
+"""The folder a case works in: databases and files as users have them, made once and copied."""
+
+import sqlite3
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+from tests.cli.program import done
+
+SETTINGS = "[motion]\nhold = 60.0\n[trial]\nmax_steps = 4\n"
+"""An hour holds some thirty behaviors, and trials are given up soon."""
+
+
+def furnish(folder: Path) -> None:
+    """Fill a folder with one of everything that commands read."""
+    settings = folder / "settings.toml"
+    settings.write_text(SETTINGS)
+    (folder / "colors.toml").write_text("[cup]\nrgb = [30, 110, 200]\nheight = 1\n")
+    (folder / "nothing.db").touch()
+    (folder / "text.db").write_text("not a database\n" * 100)
+    (folder / "folder").mkdir()
+    filled = folder / "filled.db"
+
+    def run(*args: Any) -> None:
+        done(*args, "--db", filled, cwd=folder)
+
+    run("learn", "--tool", "t-hook", "--behaviors", "150", "--config", settings)
+    run("learn", "--tool", "stick", "--behaviors", "60", "--config", settings)
+    run("solve", "--goal", "2")
+    run("break-tool")
+    run("verify", "--update", "--rows", "5")
+    run("reproduce", "--robots", "1", "--workers", "1", "--config", settings)
+    run("reproduce", "--robots", "1", "--seed", "1", "--workers", "1", "--config", settings)
+    interrupt(filled)
+    done("learn", "--tool", "stick", "--behaviors", "1", "--db", folder / "empty.db")
+    done("camera", "calibrate", "--out", folder / "calibration.json")
+    done("camera", "view", "--pattern", "--frame", "--out", folder / "pattern.png")
+    done("camera", "view", "--frame", "--out", folder / "view.png")
+
+
+def interrupt(database: Path) -> None:
+    """Leave a learning run and a reproduction in the middle, as a kill does."""
+    from affcli.config import load_settings
+    from affcli.core.trial import LearningSpec
+    from affcli.lab.learning import LearningRun
+    from affcli.store import open_store
+    from tests.lab.quick import NOW
+
+    settings = load_settings(database.parent / "settings.toml")
+    spec = LearningSpec("l-hook", 7, 0, None, 30, settings.to_json())
+    run = LearningRun(spec)
+    steps = run.steps()
+    chunk = [next(steps) for _ in range(20)]
+    with open_store(database, create=False, write=True) as store:
+        info = store.begin_learning(spec, {}, NOW)
+        store.append_learning(
+            info.id,
+            0,
+            chunk,
+            run.checkpoint(),
+            robot_seconds=run.bench.robot.clock,
+            done=False,
+            now=NOW,
+        )
+    with closing(sqlite3.connect(database)) as driver, driver:
+        driver.execute(
+            "UPDATE session SET status = 'running', robots = 2, finished_at = NULL "
+            "WHERE kind = 'reproduce' AND seed = 1"
+        )
