@@ -70,7 +70,7 @@ def test_every_command_line_is_done_or_refused_and_harms_nothing(
         if ended.code in {0, 1} and line.args.count("--json") == 1 and ended.out[:1] in b"[{":
             check_json(ended)
 
-    fuzzing("command lines", check, command_lines(), few=150, share=0.35)
+    fuzzing("command lines", check, command_lines(), few=100, share=0.3)
 
 
 WORDS = (

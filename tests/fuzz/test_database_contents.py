@@ -261,7 +261,7 @@ def emptied(home: Path) -> None:
 @pytest.mark.parametrize(
     ("kind", "changes", "few", "share"),
     [
-        ("cells", st.lists(cells, min_size=1, max_size=3), 120, 0.15),
+        ("cells", st.lists(cells, min_size=1, max_size=3), 60, 0.2),
         ("structure", st.lists(structures | cells, min_size=1, max_size=2), 40, 0.05),
     ],
     ids=["cells", "structure"],
