@@ -50,13 +50,3 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
 def torture(request: pytest.FixtureRequest) -> bool:
     """Tell whether the long tests are to run whole."""
     return bool(request.config.getoption("--torture"))
-
-
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Say what the fuzzing tried, of each kind how many cases."""
-    reports = [r for kind in ("passed", "failed") for r in terminalreporter.getreports(kind)]
-    tried = [text for r in reports for key, text in r.user_properties if key == "fuzzed"]
-    if tried:
-        terminalreporter.section("fuzzed")
-        for line in sorted(tried):
-            terminalreporter.write_line(line)

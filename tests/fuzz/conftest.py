@@ -30,7 +30,7 @@ def furnished(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def fuzzing(torture: bool, request: pytest.FixtureRequest) -> Fuzz:
+def fuzzing(torture: bool, tell: Callable[[str], None]) -> Fuzz:
     """Try cases of a kind, and say in the end of the run how many."""
 
     def run(
@@ -42,7 +42,7 @@ def fuzzing(torture: bool, request: pytest.FixtureRequest) -> Fuzz:
         share: float,
     ) -> None:
         tried = fuzz(kind, check, cases, few=few, share=share if torture else None)
-        request.node.user_properties.append(("fuzzed", str(tried)))
+        tell(str(tried))
 
     return run
 
