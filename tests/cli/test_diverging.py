@@ -14,18 +14,18 @@ from itertools import count
 
 from affcli.cli.main import main
 from affcli.core.geometry import Pose
-from affcli.simulation.pushing import PushSimulator
+from affcli.simulation.puck_and_tool import PuckAndTool
 
 nan, after, times = float(sys.argv.pop(1)), int(sys.argv.pop(1)), int(sys.argv.pop(1))
-finite, pushes = PushSimulator._puck_pose, count(1)
+finite, pushes = PuckAndTool.puck_pose, count(1)
 
 
-def pose(simulator):
+def pose(table):
     diverges = after < next(pushes) <= after + times
-    return Pose(nan, 20.0, 0.0) if diverges else finite(simulator)
+    return Pose(nan, 20.0, 0.0) if diverges else finite(table)
 
 
-PushSimulator._puck_pose = pose
+PuckAndTool.puck_pose = pose
 sys.exit(main())
 """
 """The program with an engine that diverges so many times after so many pushes that touch."""

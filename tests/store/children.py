@@ -11,6 +11,7 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
+from affcli.cli.main import Stop
 from affcli.errors import DatabaseError
 from affcli.store import Store, open_store, run_sql, upgrade
 
@@ -53,7 +54,11 @@ def hold_read_lock(path: Path) -> None:
 
 
 def wait_for_lock(path: Path) -> None:
-    """Wait for a lock that nobody gives back, until ctrl-C."""
+    """Wait for a lock that nobody gives back, until ctrl-C, to which affcli's own handler listens.
+
+    Python's own is not enough: an exception that falls into a callback is swallowed.
+    """
+    Stop()
     with open_store(path, create=False, write=True) as store:
         ready()
         write_something(store)
