@@ -68,9 +68,9 @@ check: $(INSTALLED_DEV)
 reproduce: $(INSTALLED)
 	$(AFFCLI) reproduce --robots $(ROBOTS) --seed $(SEED) $(if $(WORKERS),--workers $(WORKERS)) --db reproduce.db
 
-## bench         measure the speed, also beside other engines, which it installs apart
+## bench         measure the speed, also beside other engines, which it installs apart; figures in bench.json
 bench: $(INSTALLED)
-	$(VENV)/bin/python experiments/speed/bench.py
+	$(VENV)/bin/python experiments/speed/bench.py --json bench.json
 
 ## clean         remove .venv, caches, build products and demo.db; every other database stays
 clean:
