@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from measuring import ROUNDS, Scale, Took, bar, ratios, took, verdict
+from pushing import ours
 from workload import DISTANCE, OUTLINES, SETTINGS, Push, touching, workload
 
 PEERS = Path(__file__).with_name("peers")
@@ -74,7 +75,7 @@ def bench_peers(scale: Scale) -> dict[str, Any]:
 def _against(peer: Peer, pushes: Sequence[Push], rounds: int) -> dict[str, Any]:
     """Measure one engine."""
     size = len(pushes) // rounds
-    ours, theirs, apart = [], [], []
+    own, theirs, apart = [], [], []
     went, moved = [], []
     with running(peer) as process:
         engine = ask(process, peer, table_of_ours())
@@ -83,7 +84,7 @@ def _against(peer: Peer, pushes: Sequence[Push], rounds: int) -> dict[str, Any]:
         for i in range(rounds):
             block = pushes[i * size : (i + 1) * size]
             time, ends = took(ours, block)
-            ours.append(time)
+            own.append(time)
             answer = ask(process, peer, [_as_json(push) for push in block])
             theirs.append(Took(answer["seconds"], answer["cpu_seconds"]))
             moved.append(answer["moved"])
@@ -94,13 +95,13 @@ def _against(peer: Peer, pushes: Sequence[Push], rounds: int) -> dict[str, Any]:
     share = statistics.mean(moved) / wanted
     if not 0.85 <= share <= 1.15:
         raise CannotRunError(f"it moved the puck {share:.2f} times as far: not the same work")
-    wall = ratios([t.wall for t in theirs], [t.wall for t in ours])
-    cpu = ratios([t.cpu for t in theirs], [t.cpu for t in ours])
+    wall = ratios([t.wall for t in theirs], [t.wall for t in own])
+    cpu = ratios([t.cpu for t in theirs], [t.cpu for t in own])
     held = {"bar": None} if peer.least is None else bar(cpu.median, least=peer.least)
     middle, most = statistics.median(apart), sorted(apart)[len(apart) * 9 // 10]
     near = f", ends {middle:.2f} in from ours in the median, 90 % within {most:.2f}"
     each = 1000.0 * statistics.median(t.cpu for t in theirs) / size
-    mine = 1000.0 * statistics.median(t.cpu for t in ours) / size
+    mine = 1000.0 * statistics.median(t.cpu for t in own) / size
     print(
         f"peers: {peer.name}: we do {cpu} as many pushes a second (wall {wall.median:.3g}x; "
         f"{engine['engine']}, steps of {1000 * engine['step']:.3g} ms, {each:.2f} ms a push, ours "
