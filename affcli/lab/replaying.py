@@ -17,7 +17,7 @@ from affcli.core.task import GoalRegion
 from affcli.core.tool import TOOL_PARTS
 from affcli.core.trial import Counters, TrialStep
 from affcli.lab.filming import FRAME_RATE, Reel
-from affcli.lab.learning import LearningRun
+from affcli.lab.learning_run import LearningRun
 from affcli.lab.plausible import check_rows, check_starts, check_trial, not_written
 from affcli.lab.trials import Ended, LostAffordances, run_trial
 from affcli.planning.nested_query import Choice, candidates, choose_row

@@ -25,7 +25,7 @@ from affcli.core.trial import (
     TrialRecord,
 )
 from affcli.errors import AffcliError
-from affcli.lab.learning import LearningRun
+from affcli.lab.learning_run import LearningRun
 from affcli.lab.sensing import calibration_of
 from affcli.lab.trials import LostAffordances, trial_specs, whole_trial
 from affcli.lab.versions import versions

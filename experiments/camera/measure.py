@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from affcli.config import Settings, with_sensor
 from affcli.core.tool import TOOL_PARTS
 from affcli.core.trial import LearningSpec
-from affcli.lab.learning import LearningRun
+from affcli.lab.learning_run import LearningRun
 
 
 def main() -> None:

@@ -13,7 +13,8 @@ from measuring import ROUNDS, Scale, Took, bar, took, verdict
 from affcli.config import Settings
 from affcli.core.tool import TOOL_PARTS
 from affcli.core.trial import LearningSpec
-from affcli.lab.learning import CHUNK, LearningRun, learn
+from affcli.lab.learning import CHUNK, learn
+from affcli.lab.learning_run import LearningRun
 from affcli.lab.versions import versions
 from affcli.store import LearningStep, Store, open_store
 

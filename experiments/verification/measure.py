@@ -27,7 +27,7 @@ from affcli.core.tool import TOOL_PARTS
 from affcli.core.trial import LearningSpec
 from affcli.core.verification import Evidence, Verdict, VerificationSpec
 from affcli.lab.bench import tool_named
-from affcli.lab.learning import LearningRun
+from affcli.lab.learning_run import LearningRun
 from affcli.lab.predicting import Oracle, PredictionSpec, fresh_pushes
 from affcli.lab.verifying import replications
 from affcli.report.prediction import LEARNED_FROM, PREDICTORS, Push, Score

@@ -13,7 +13,7 @@ import pytest
 from rich.cells import cell_len
 
 from affcli.core.trial import LearningSpec
-from affcli.lab.learning import LearningRun
+from affcli.lab.learning_run import LearningRun
 from affcli.lab.solving import solve
 from affcli.store import open_store
 from tests.cli.program import Ended, affcli, done, refused, rows, started, wait_until

@@ -42,7 +42,7 @@ def interrupt(database: Path) -> None:
     """Leave a learning run and a reproduction in the middle, as a kill does."""
     from affcli.config import load_settings
     from affcli.core.trial import LearningSpec
-    from affcli.lab.learning import LearningRun
+    from affcli.lab.learning_run import LearningRun
     from affcli.store import open_store
     from tests.lab.quick import NOW
 

@@ -7,7 +7,7 @@ from affcli.config import Settings, settings_with
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.geometry import Point, Pose
 from affcli.core.trial import BabblingRecord, LearningSpec, Truth
-from affcli.lab.learning import LearningRun
+from affcli.lab.learning_run import LearningRun
 
 NOW = "2026-01-02T03:04:05+00:00"
 Steps = tuple[tuple[BabblingRecord, Truth], ...]

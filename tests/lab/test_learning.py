@@ -14,7 +14,8 @@ from affcli.core.change_detection import change_detected
 from affcli.errors import AffcliError
 from affcli.lab import learning
 from affcli.lab.bench import tool_named
-from affcli.lab.learning import LearningRun, learn
+from affcli.lab.learning import learn
+from affcli.lab.learning_run import LearningRun
 from affcli.simulation.arm import reach_at
 from affcli.store import LearningRunInfo, Store
 from tests.factories import learning_spec

@@ -10,7 +10,8 @@ from affcli.config import Settings, settings_from_json, settings_with, with_sens
 from affcli.core.observation import SENSOR_KINDS, SensorKind
 from affcli.core.trial import LearningSpec, Protocol
 from affcli.lab.breaking import break_tool
-from affcli.lab.learning import LearningRun, learn
+from affcli.lab.learning import learn
+from affcli.lab.learning_run import LearningRun
 from affcli.lab.reproduction import one_robot, reproduce
 from affcli.lab.sensing import calibration_of, eye_of, sensor_for
 from affcli.lab.solving import SolvedTrial, solve

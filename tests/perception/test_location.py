@@ -12,7 +12,7 @@ from affcli.core.task import GOAL_NUMBERS, START_NUMBERS, goal_regions, start_po
 from affcli.core.tool import TOOL_PARTS
 from affcli.core.trial import LearningSpec
 from affcli.errors import NotSeenError
-from affcli.lab.learning import LearningRun
+from affcli.lab.learning_run import LearningRun
 from affcli.perception.camera import Array
 from affcli.perception.location import places_of
 from tests.perception.views import SQUARE, WORKSPACE, default_eye, gap, scene

@@ -13,7 +13,7 @@ from affcli.core.behavior import BehaviorCall, BehaviorName, ExecutionStatus
 from affcli.core.geometry import Point, Pose, direction_degrees
 from affcli.core.observation import Observation
 from affcli.errors import DatabaseError
-from affcli.lab.learning import LearningRun
+from affcli.lab.learning_run import LearningRun
 from affcli.store import LearningStep, Store, run_sql
 from affcli.store.learning import insert_learning_steps
 from tests.factories import learning_spec
