@@ -17,6 +17,10 @@ that run for hours; importing the libraries would be searched three hundred time
 of the time of `affcli learn`."""
 
 
+AGAIN = 0.1
+"""Seconds after which a signal is minded once more when nothing has come of it."""
+
+
 class Stopped(BaseException):
     """The process was asked to end; not an Exception, so nothing takes it for a failure."""
 
@@ -24,7 +28,9 @@ class Stopped(BaseException):
 class Stop:
     """What SIGINT and SIGTERM do: leave by an exception, so that what is open is closed.
 
-    A second signal ends the process at once; SQLite then rolls back when the file is next opened.
+    Python swallows an exception that falls into a callback, as the import system, sqlite3 and what
+    clears up objects have many. So it is raised again and again until `main` has it. A second
+    signal ends the process at once; SQLite then rolls back when the file is next opened.
     """
 
     signum: int | None = None
@@ -33,7 +39,7 @@ class Stop:
         for signum in (signal.SIGINT, signal.SIGTERM):
             signal.signal(signum, self)
         signal.signal(signal.SIGALRM, _leave)
-        sys.unraisablehook = _once_more
+        sys.unraisablehook = _pass_over
 
     def __call__(self, signum: int, frame: FrameType | None) -> None:
         """Remember the signal and leave."""
@@ -41,23 +47,24 @@ class Stop:
         self.signum = signum
         for either in (signal.SIGINT, signal.SIGTERM):
             signal.signal(either, signal.SIG_DFL)
+        signal.setitimer(signal.ITIMER_REAL, AGAIN, AGAIN)
         raise Stopped
 
 
 def _leave(signum: int, frame: FrameType | None) -> None:
-    """Leave by an exception."""
+    """Leave by an exception, unless one is under way: what it closes on its way is closed."""
     del signum, frame
+    error = sys.exception()
+    while error is not None:
+        if isinstance(error, Stopped):
+            return
+        error = error.__context__
     raise Stopped
 
 
-def _once_more(unraisable: "sys.UnraisableHookArgs") -> None:
-    """Leave a moment later when Python had to swallow the exception.
-
-    It does so where the signal falls into a callback, as the import system has many.
-    """
-    if isinstance(unraisable.exc_value, Stopped):
-        signal.setitimer(signal.ITIMER_REAL, 0.005)
-    else:
+def _pass_over(unraisable: "sys.UnraisableHookArgs") -> None:
+    """Say nothing of our exception where Python had to swallow it."""
+    if not isinstance(unraisable.exc_value, Stopped):
         sys.__unraisablehook__(unraisable)
 
 
@@ -71,8 +78,10 @@ def main() -> int:
     prepare_streams()
     stop = Stop()
     try:
-        return _run()
+        code = _run()
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
     except BaseException as error:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
         # After a signal this may be another exception than ours: sqlite3 forgets what is raised in
         # its callbacks, and SQLAlchemy closes the connection that a signal interrupts.
         if stop.signum is not None:
@@ -83,6 +92,7 @@ def main() -> int:
         if isinstance(error, AffcliError):
             return _fail(str(error), error.exit_code)
         raise
+    return code
 
 
 def _run() -> int:

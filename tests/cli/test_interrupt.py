@@ -8,6 +8,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.cli.program import (
@@ -151,6 +152,22 @@ def test_stopped_while_it_starts_it_is_one_line_too(
             wait_until(partial(handles_signals, process.pid), process)
             time.sleep(delay)
             assert stopped(process, signum) == Ended(code, "", GOES_ON)
+
+
+@pytest.mark.torture
+@pytest.mark.fault(3)
+def test_a_signal_is_heard_whenever_it_comes(
+    torture: bool, tell: Callable[[str], None], tmp_path: Path
+) -> None:
+    """Raised once only, one in forty fell into a callback of an import and was lost."""
+    moments = np.random.default_rng(3).uniform(0.0, 0.5, 200 if torture else 6)
+    for k, delay in enumerate(moments.tolist()):
+        signum, code = ((signal.SIGINT, 130), (signal.SIGTERM, 143))[k % 2]
+        with started(*LONG, "--db", tmp_path / f"{k}.db") as process:
+            wait_until(partial(handles_signals, process.pid), process)
+            time.sleep(delay)
+            assert stopped(process, signum) == Ended(code, "", GOES_ON)
+    tell(f"{len(moments)} signals, each heard")
 
 
 def handles_signals(pid: int) -> bool:
