@@ -1,1 +1,1 @@
-"""What the robot can do: motor schemas, and the behaviors composed of them."""
+"""What the robot can do, one file a family; the registry finds behaviors and bindings by PARTS."""

@@ -4,10 +4,14 @@ from dataclasses import dataclass
 
 from affcli.core.behavior import BehaviorCall
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
+from affcli.core.geometry import Point
 from affcli.core.observation import Movement, Observation, angle_between_degrees, movement
 
 REPLICATION_ANGLE_DEGREES = 40.0
 """A use is successful when the movement seen is within this angle of the one expected (§5.2)."""
+
+PROBABILITY_THRESHOLD = 0.5
+"""A row is considered while its replication probability is greater than this (§6.2)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +27,8 @@ class Affordance:
         truncated: the behavior met the edge of the reach and stopped there.
         times_used: how often this sequence of behaviors was performed; 1 when the row is made.
         times_successful: how often it gave similar observations; 1 when the row is made.
+        wrist_angle: the wrist's angle when the exploratory behavior began (rad, table frame).
+        travel: how far the wrist went in it, by the joint encoders (in, table frame).
     """
 
     step: int
@@ -33,6 +39,8 @@ class Affordance:
     truncated: bool = False
     times_used: int = 1
     times_successful: int = 1
+    wrist_angle: float = 0.0
+    travel: Point = Point(0.0, 0.0)
 
     @property
     def replication_probability(self) -> float:
@@ -45,7 +53,17 @@ class Affordance:
         return movement(self.start, self.end)
 
 
-def replicates(expected: Movement, seen: Movement) -> bool:
+def is_probable(successful: int, used: int, threshold: float = PROBABILITY_THRESHOLD) -> bool:
+    """Tell whether a row with these counters is considered: probability above the threshold.
+
+    §6.2: "only those rows that have a replication probability [...] greater than 1/2".
+    """
+    return successful > threshold * used
+
+
+def replicates(
+    expected: Movement, seen: Movement, angle_degrees: float = REPLICATION_ANGLE_DEGREES
+) -> bool:
     """Tell whether `seen` counts as a success of a row that expects `expected`.
 
     §5.2: "The times-successful counter is incremented if the observed attractor movement is within
@@ -54,4 +72,4 @@ def replicates(expected: Movement, seen: Movement) -> bool:
     """
     if seen.distance <= MOVEMENT_THRESHOLD:
         return False
-    return angle_between_degrees(expected, seen) <= REPLICATION_ANGLE_DEGREES
+    return angle_between_degrees(expected, seen) <= angle_degrees

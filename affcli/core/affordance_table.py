@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from affcli.core.affordance import Affordance
+from affcli.core.affordance import PROBABILITY_THRESHOLD, Affordance, is_probable
 from affcli.core.observation import Observation
 
 Rows = NDArray[np.intp]
@@ -27,6 +27,11 @@ class AffordanceTable:
     Attributes:
         movement_x, movement_y, movement_z: expected movement of each row (n,), in, table frame.
         offset_x, offset_y: attractor as seen from the wrist at the start of each row (n,), in.
+        travel_x, travel_y: how far the wrist went in each row (n,), in, table frame.
+        wrist_angle: the wrist's angle at the start of each row (n,), rad.
+        truncated: whether each row met the edge of the reach (n,).
+        binding: which of `bindings` each row was made with (n,).
+        bindings: the distinct binding behaviors of the rows, in order of age.
         times_used, times_successful: the counters (n,), int64.
         probable: whether the replication probability is greater than 1/2 (n,), kept up to date.
     """
@@ -37,11 +42,18 @@ class AffordanceTable:
         offsets = np.array([row.start.wrist_to_object for row in self._rows]).reshape(-1, 2)
         self.movement_x, self.movement_y, self.movement_z = np.ascontiguousarray(movements.T)
         self.offset_x, self.offset_y = np.ascontiguousarray(offsets.T)
+        self.travel_x = np.array([row.travel.x for row in self._rows], dtype=float)
+        self.travel_y = np.array([row.travel.y for row in self._rows], dtype=float)
+        self.wrist_angle = np.array([row.wrist_angle for row in self._rows], dtype=float)
+        self.truncated = np.array([row.truncated for row in self._rows], dtype=bool)
+        self.bindings = tuple(dict.fromkeys(row.binding for row in self._rows))
+        numbered = {binding: number for number, binding in enumerate(self.bindings)}
+        self.binding = np.array([numbered[row.binding] for row in self._rows], dtype=np.intp)
         self.times_used = np.array([row.times_used for row in self._rows], dtype=np.int64)
         self.times_successful = np.array(
             [row.times_successful for row in self._rows], dtype=np.int64
         )
-        self.probable = 2 * self.times_successful > self.times_used
+        self.probable = self.times_successful > PROBABILITY_THRESHOLD * self.times_used
         self._class_of, self._class_colors = _color_classes(self._rows)
         self._all = np.arange(len(self._rows))
         self._all.flags.writeable = False
@@ -80,7 +92,15 @@ class AffordanceTable:
         """Count one use of the row at `position`, as §3.2 does in testing trials."""
         self.times_used[position] += 1
         self.times_successful[position] += int(success)
-        self.probable[position] = 2 * self.times_successful[position] > self.times_used[position]
+        self.probable[position] = is_probable(
+            int(self.times_successful[position]), int(self.times_used[position])
+        )
+
+    def more_probable_than(self, threshold: float) -> NDArray[np.bool_]:
+        """Return whether each row's replication probability is greater than a threshold (n,)."""
+        if threshold == PROBABILITY_THRESHOLD:
+            return self.probable
+        return np.asarray(self.times_successful > threshold * self.times_used)
 
 
 def _consistent(a: tuple[float, ...], b: tuple[float, ...]) -> bool:

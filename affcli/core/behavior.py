@@ -1,23 +1,17 @@
-"""Binding and exploratory behaviors: names, calls, and the wrist paths they give (§3.2, §5)."""
+"""Binding and exploratory behaviors: names, calls, and how their execution ends (§3.2, §5)."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import NewType
+from typing import Any, NewType
 
-from affcli.core.geometry import Point
+from affcli.core.geometry import Pose
+from affcli.core.motion import Motion, motion_from_json, motion_json
 
 BehaviorName = NewType("BehaviorName", str)
 
 GRASP = BehaviorName("grasp")
 POSITION_WRIST = BehaviorName("position wrist")
-EXTEND_ARM = BehaviorName("extend arm")
-CONTRACT_ARM = BehaviorName("contract arm")
-SLIDE_ARM_LEFT = BehaviorName("slide arm left")
-SLIDE_ARM_RIGHT = BehaviorName("slide arm right")
-
-OFFSET_DISTANCES = (2.0, 5.0)
-"""The two values of offset_distance used in the paper (in, §5)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,8 +20,9 @@ class BehaviorCall:
 
     Args:
         name: which behavior.
-        params: its parameters by name, in inches (grasp: grasp_point, measured along the handle
-            from its lower end; position wrist: x, y; the others: offset_distance).
+        params: its parameters by name, in inches and degrees (grasp: grasp_point, measured along
+            the handle from its lower end, and angle; position wrist: x, y and angle; the paper's
+            exploratory behaviors: offset_distance). An angle of 0 is left out.
     """
 
     name: BehaviorName
@@ -42,28 +37,55 @@ class BehaviorCall:
         """Return one parameter by name; KeyError when the behavior has no such parameter."""
         return dict(self.params)[param]
 
+    def get(self, param: str, default: float) -> float:
+        """Return one parameter by name, or the default when the call leaves it out."""
+        return dict(self.params).get(param, default)
+
     def __str__(self) -> str:
         """Write the call as a person would: ``contract arm 5``."""
         return " ".join([self.name, *(f"{value:g}" for _, value in self.params)])
 
 
 @dataclass(frozen=True, slots=True)
-class WristPath:
-    """What a behavior asks of the wrist: where to go, how, and how long that takes.
+class ExploratoryBehavior:
+    """An exploratory behavior by value: what it is called, and the motion it gives.
 
     Args:
-        end: where the path leads (in, table frame).
-        lifted: the tool is lifted on the way, so it touches nothing.
-        speed: cruise speed (in/s).
-        acceleration: in/s^2 at both ends of the trapezoid.
-        dwell: stillness before and after, and lifting and lowering, in all (s).
+        call: its name and parameters.
+        motion: from where the wrist is when it begins.
     """
 
-    end: Point
-    lifted: bool
-    speed: float
-    acceleration: float
-    dwell: float
+    call: BehaviorCall
+    motion: Motion
+
+
+Repertoire = tuple[ExploratoryBehavior, ...]
+"""The exploratory behaviors that babbling draws from, in order."""
+
+
+def repertoire_json(repertoire: Repertoire) -> list[dict[str, Any]]:
+    """Return a repertoire as JSON types, each behavior with its parameters and its motion."""
+    return [
+        {
+            "behavior": one.call.name,
+            "params": dict(one.call.params),
+            "motion": motion_json(one.motion),
+        }
+        for one in repertoire
+    ]
+
+
+def repertoire_from_json(value: Any) -> Repertoire:
+    """Return the repertoire that `repertoire_json` wrote; ValueError or KeyError if it did not."""
+    return tuple(
+        ExploratoryBehavior(
+            BehaviorCall.of(
+                BehaviorName(one["behavior"]), {k: float(v) for k, v in one["params"].items()}
+            ),
+            motion_from_json(one["motion"]),
+        )
+        for one in value
+    )
 
 
 class ExecutionStatus(StrEnum):
@@ -85,13 +107,13 @@ class Execution:
     Args:
         call: the behavior and its commanded parameters.
         status: how it ended.
-        wrist_start: where the wrist was before (in, table frame; joint encoders).
+        wrist_start: where the wrist was before (in, rad, table frame; joint encoders).
         wrist_end: where the wrist was after.
         duration: robot seconds it took.
     """
 
     call: BehaviorCall
     status: ExecutionStatus
-    wrist_start: Point
-    wrist_end: Point
+    wrist_start: Pose
+    wrist_end: Pose
     duration: float

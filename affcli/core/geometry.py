@@ -79,6 +79,17 @@ class ConvexPolygon:
         """Return this polygon translated by (dx, dy) (in)."""
         return ConvexPolygon(tuple(Point(x + dx, y + dy) for x, y in self.vertices))
 
+    def turned(self, angle: float) -> "ConvexPolygon":
+        """Return this polygon turned about the origin (rad, counter-clockwise); itself for 0."""
+        if angle == 0.0:
+            return self
+        c, s = math.cos(angle), math.sin(angle)
+        return ConvexPolygon(tuple(Point(c * x - s * y, s * x + c * y) for x, y in self.vertices))
+
+    def placed(self, pose: Pose) -> "ConvexPolygon":
+        """Return this polygon turned about the origin and then moved, as a pose says."""
+        return self.turned(pose.angle).moved(pose.x, pose.y)
+
     def distance(self, point: Point) -> float:
         """Return the distance from `point` to the polygon (in); 0 inside or on the edge."""
         inside = True

@@ -41,6 +41,15 @@ class Observation(NamedTuple):
         return Point(self.wrist_to_object_x, self.wrist_to_object_y)
 
     @property
+    def wrist(self) -> Point:
+        """Where the wrist is seen: the attractor's place minus its offset (in, table frame)."""
+        return self.wrist_for(self.wrist_to_object)
+
+    def wrist_for(self, offset: Point) -> Point:
+        """Return where the wrist must be for the attractor to lie at `offset` from it (in)."""
+        return Point(self.object_x - offset.x, self.object_y - offset.y)
+
+    @property
     def colors(self) -> tuple[float, ...]:
         """o7 to o12: the colour of the object, then that of the tool."""
         return self[6:12]

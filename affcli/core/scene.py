@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from affcli.core.geometry import Point, Pose
+from affcli.core.geometry import Pose
 from affcli.core.task import GoalRegion
 from affcli.core.tool import Color, Tool
 
@@ -14,15 +14,15 @@ class Scene:
     Args:
         attractor: pose of the puck's centre (in, rad, table frame).
         attractor_color: its colour.
-        wrist: the wrist, which is the tool's grasp point (in, table frame).
-        tool: the tool held, by its true shape.
+        wrist: the wrist (in, rad, table frame).
+        tool: the tool held, by its true shape, in the hand frame.
         goal: the goal region on the table; None while learning.
         lift: how high over the table the tool is held (in); 0 while it slides.
     """
 
     attractor: Pose
     attractor_color: Color
-    wrist: Point
+    wrist: Pose
     tool: Tool
     goal: GoalRegion | None
     lift: float = 0.0

@@ -1,25 +1,25 @@
-"""Extension-of-reach tasks: goal regions and starts (§7.1, Fig. 8)."""
+"""Tasks: bring the attractor from a start over a goal region (§7.1, Fig. 8)."""
 
 from dataclasses import dataclass
 
-from affcli.core.geometry import Point
-from affcli.core.workspace import TaskLayout
+import numpy as np
+from numpy.typing import NDArray
 
-GOAL_NUMBERS = (1, 2, 3, 4)
-START_NUMBERS = (1, 2, 3, 4)
+from affcli.core.geometry import ConvexPolygon, Point
+from affcli.core.observation import Observation
 
 
 @dataclass(frozen=True, slots=True)
 class GoalRegion:
-    """A colour-coded square on the table.
+    """A colour-coded square on the table; a `Goal` of `core.ports`.
 
     Args:
-        number: 1 to 4, as in Fig. 8.
+        name: what the goal is called: ``1`` to ``4`` as in Fig. 8, or another name.
         center: of the square (in, table frame).
         half_width: half its side (in).
     """
 
-    number: int
+    name: str
     center: Point
     half_width: float
 
@@ -30,19 +30,50 @@ class GoalRegion:
             and abs(point.y - self.center.y) <= self.half_width
         )
 
+    def reached(self, seen: Observation) -> bool:
+        """Tell whether the attractor is seen over the region."""
+        return self.contains(seen.object_position)
 
-def goal_regions(layout: TaskLayout) -> dict[int, GoalRegion]:
-    """Return the four goal regions by number: near, far, left and right on the mid-line."""
-    centers = {
-        1: Point(0.0, layout.goal_1_y),
-        2: Point(0.0, layout.goal_2_y),
-        3: Point(-layout.goal_side_x, layout.midline),
-        4: Point(layout.goal_side_x, layout.midline),
-    }
-    return {n: GoalRegion(n, center, layout.goal_half_width) for n, center in centers.items()}
+    def squared_distance(
+        self, at: Point, dx: NDArray[np.float64], dy: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Return the squared distances to the region's centre of the places `at` + (dx, dy).
+
+        Choice: the paper's "distance between the attractor object and the goal region" (§6.2) is
+        taken to the region's centre.
+
+        Args:
+            at: a place (in, table frame).
+            dx, dy: movements from there (n,), (n,) (in).
+
+        Returns:
+            (n,), in^2.
+        """
+        x = dx + (at.x - self.center.x)
+        y = dy + (at.y - self.center.y)
+        x *= x
+        y *= y
+        x += y
+        return x
+
+    def outline(self) -> ConvexPolygon:
+        """Return the region's outline (in, table frame)."""
+        (x, y), h = self.center, self.half_width
+        return ConvexPolygon.box(x - h, y - h, x + h, y + h)
 
 
-def start_positions(layout: TaskLayout) -> dict[int, Point]:
-    """Return the four starts of the attractor by number, left to right on the mid-line."""
-    middle = (START_NUMBERS[0] + START_NUMBERS[-1]) / 2
-    return {n: Point((n - middle) * layout.start_spacing, layout.midline) for n in START_NUMBERS}
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One task: a goal, and where the attractor begins.
+
+    Args:
+        task_set: the set it is one of: ``extension-of-reach``.
+        goal: the region to bring the attractor over.
+        start_name: what the start is called: ``1`` to ``4`` as in Fig. 8, or another name.
+        start: where the attractor begins (in, table frame).
+    """
+
+    task_set: str
+    goal: GoalRegion
+    start_name: str
+    start: Point

@@ -1,14 +1,16 @@
-"""The five tools of the paper, by their parts (§4, Figs. 1 and 9).
+"""Tools by their parts, and how one is held (§4, §5.1, Fig. 1).
 
-Tool frame: origin at the grasp point, y along the handle away from the robot, x to the right. The
-tool keeps its orientation in the table frame: a tool at wrist (x, y) is its parts moved by (x, y).
+Tool frame: origin at the paper's grasp point, y along the handle away from the robot, x to the
+right. Hand frame: origin at the wrist, y where the wrist points. A tool that is held is its parts in
+the hand frame; on the table it is these turned by the wrist's angle and moved to the wrist.
 """
 
 from dataclasses import dataclass, field, replace
-from typing import NewType
+from functools import lru_cache
+from typing import Any, NamedTuple, NewType
 
-from affcli.core.geometry import ConvexPolygon, Point
-from affcli.core.workspace import ToolGeometry
+from affcli.core.geometry import ConvexPolygon, Point, Pose
+from affcli.core.identity import key_of
 
 ToolName = NewType("ToolName", str)
 
@@ -19,6 +21,10 @@ class Color(tuple[float, float, float]):
     __slots__ = ()
 
 
+PUCK_COLOR = Color((240.0, 120.0, 20.0))
+"""The attractor is an orange hockey puck (§4)."""
+
+
 @dataclass(frozen=True, slots=True)
 class ToolPart:
     """A named convex part of a tool (handle, left bar, right bar, left hook, right hook)."""
@@ -27,20 +33,37 @@ class ToolPart:
     outline: ConvexPolygon
 
 
+class Hold(NamedTuple):
+    """How a tool is held: where and at which angle it was grasped (§5.1).
+
+    Args:
+        grasp_point: along the handle from its lower end (in).
+        angle: by how much the tool is turned in the hand (rad, counter-clockwise).
+    """
+
+    grasp_point: float
+    angle: float = 0.0
+
+
 @dataclass(frozen=True, slots=True)
 class Tool:
     """A rigid tool of one colour.
 
     The robot knows it by its colour alone (§7.2); the parts are for the physics and the pictures.
 
+    Args:
+        name: of the tool.
+        color: of all its parts.
+        parts: in the tool frame, or in the hand frame of one that is held; none when a record
+            names a tool whose shape is not known.
+
     Attributes:
-        outlines: the convex parts in the tool frame (in).
+        outlines: the convex parts (in).
     """
 
     name: ToolName
     color: Color
     parts: tuple[ToolPart, ...]
-    grasp_point: Point = Point(0.0, 0.0)
     outlines: tuple[ConvexPolygon, ...] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -50,8 +73,23 @@ class Tool:
         """Return this shape in another colour: how §7.2 simulates a tool that broke."""
         return replace(self, color=color)
 
+    def held(self, hold: Hold) -> "Tool":
+        """Return the tool with its parts in the hand frame; itself for the paper's own grasp.
+
+        The tool frame's origin lies as far above the handle's lower end as the parts reach below
+        it, so that is where the wrist is when the grasp point is the paper's.
+        """
+        shift = -min(outline.bounds[1] for outline in self.outlines) - hold.grasp_point
+        if shift == 0.0 and hold.angle == 0.0:
+            return self
+        parts = tuple(
+            ToolPart(part.name, part.outline.moved(0.0, shift).turned(hold.angle))
+            for part in self.parts
+        )
+        return replace(self, parts=parts)
+
     def part_nearest(self, point: Point) -> ToolPart:
-        """Return the part nearest to `point` (in, tool frame); of equally near ones the first."""
+        """Return the part nearest to `point` (in, frame of the parts); of equal ones the first."""
         return min(self.parts, key=lambda part: part.outline.distance(point))
 
     def parts_missing_in(self, other: "Tool") -> tuple[ToolPart, ...]:
@@ -59,52 +97,47 @@ class Tool:
         kept = {part.name for part in other.parts}
         return tuple(part for part in self.parts if part.name not in kept)
 
+    def canonical(self) -> dict[str, Any]:
+        """Return the tool by value as JSON types."""
+        return {
+            "name": self.name,
+            "color": list(self.color),
+            "parts": [[p.name, [list(v) for v in p.outline.vertices]] for p in self.parts],
+        }
 
-TOOL_PARTS: dict[ToolName, tuple[str, ...]] = {
-    ToolName("stick"): ("handle",),
-    ToolName("l-stick"): ("handle", "left bar"),
-    ToolName("l-hook"): ("handle", "left bar", "left hook"),
-    ToolName("t-stick"): ("handle", "left bar", "right bar"),
-    ToolName("t-hook"): ("handle", "left bar", "right bar", "left hook", "right hook"),
-}
-"""Which parts each tool has. Choice: a single bar or hook is on the left, so that a T-hook which
-lost its right bar and right hook is the L-hook (Fig. 9: the upper right sections differ)."""
-
-TOOL_COLORS: dict[ToolName, Color] = {
-    ToolName("stick"): Color((200.0, 40.0, 40.0)),
-    ToolName("l-stick"): Color((40.0, 90.0, 200.0)),
-    ToolName("l-hook"): Color((150.0, 60.0, 190.0)),
-    ToolName("t-stick"): Color((230.0, 210.0, 40.0)),
-    ToolName("t-hook"): Color((40.0, 160.0, 70.0)),
-}
-"""Each tool has one colour (§4); the paper does not say which. All lie over 100 apart in RGB."""
-
-PUCK_COLOR = Color((240.0, 120.0, 20.0))
-"""The attractor is an orange hockey puck (§4)."""
+    @property
+    def key(self) -> str:
+        """The key of the tool's value: equal for the same name, colour and outlines."""
+        return key_of(self.canonical())
 
 
-def tool_outlines(geometry: ToolGeometry) -> dict[str, ConvexPolygon]:
-    """Return the outline of every part a tool can have, in the tool frame (in)."""
-    half = geometry.part_width / 2.0
-    far = geometry.handle_length
-    bar_near = far - geometry.part_width
-    hook_near = far - geometry.hook_length
-    reach = geometry.bar_reach
-    inner = reach - geometry.part_width
-    box = ConvexPolygon.box
-    return {
-        "handle": box(-half, -geometry.handle_below_grasp, half, far),
-        "left bar": box(-reach, bar_near, -half, far),
-        "right bar": box(half, bar_near, reach, far),
-        "left hook": box(-reach, hook_near, -inner, bar_near),
-        "right hook": box(inner, hook_near, reach, bar_near),
-    }
+def tool_from_canonical(value: Any) -> Tool:
+    """Return the tool that `Tool.canonical` wrote; ValueError, KeyError or TypeError if it did not."""
+    red, green, blue = map(float, value["color"])
+    parts = tuple(
+        ToolPart(str(name), ConvexPolygon(tuple(Point(float(x), float(y)) for x, y in vertices)))
+        for name, vertices in value["parts"]
+    )
+    return Tool(ToolName(str(value["name"])), Color((red, green, blue)), parts)
 
 
-def paper_tools(geometry: ToolGeometry) -> dict[ToolName, Tool]:
-    """Return the five tools of §4, in the order of the results table of §7.1."""
-    outlines = tool_outlines(geometry)
-    return {
-        name: Tool(name, TOOL_COLORS[name], tuple(ToolPart(p, outlines[p]) for p in parts))
-        for name, parts in TOOL_PARTS.items()
-    }
+def unknown_tool(name: str) -> Tool:
+    """Return a tool of which only the name is known: it has no parts, and nothing can draw it."""
+    return Tool(ToolName(name), Color((128.0, 128.0, 128.0)), ())
+
+
+@lru_cache(maxsize=256)
+def turned_outlines(outlines: tuple[ConvexPolygon, ...], angle: float) -> tuple[ConvexPolygon, ...]:
+    """Return the outlines turned about the wrist (rad); themselves for an angle of 0."""
+    return tuple(outline.turned(angle) for outline in outlines) if angle else outlines
+
+
+def placed_parts(parts: tuple[ToolPart, ...], wrist: Pose) -> tuple[ToolPart, ...]:
+    """Return parts in the hand frame as they lie on the table at a wrist pose (table frame)."""
+    return tuple(ToolPart(part.name, part.outline.placed(wrist)) for part in parts)
+
+
+def middle_x(parts: tuple[ToolPart, ...]) -> float:
+    """Return x of the middle of some parts (in); 0 for none."""
+    middles = [0.5 * (p.outline.bounds[0] + p.outline.bounds[2]) for p in parts]
+    return sum(middles) / len(middles) if middles else 0.0

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import NamedTuple
 
-from affcli.core.observation import Movement, SensorKind
+from affcli.core.observation import Movement
 from affcli.core.trial import Attempt
 
 INTACT, CHANGED = 0.02, 0.10
@@ -30,29 +30,6 @@ class Verdict(StrEnum):
     CHANGED = "tool has changed"
     UNDECIDED = "undecided"
     """The tries were too few to tell."""
-
-
-@dataclass(frozen=True, slots=True)
-class VerificationSpec:
-    """What a verification is a pure function of, beside the table it starts from.
-
-    Args:
-        tool: the tool the robot believes to hold: the one whose table is tested.
-        shape: the shape it truly holds; another one when the tool changed.
-        seed: 0 to 2^63 - 1.
-        robot: which of many robots that share the seed.
-        sensor: through what the robot sees.
-        tries: how many are made, at most.
-        until_verdict: it ends with the first verdict.
-    """
-
-    tool: str
-    shape: str
-    seed: int
-    robot: int
-    sensor: SensorKind
-    tries: int
-    until_verdict: bool
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,15 +1,17 @@
 """Behavioral babbling: how the affordance table is filled (§3.2, §6)."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
+from affcli.behaviors.positioning import position_wrist
 from affcli.core.affordance import Affordance
-from affcli.core.behavior import POSITION_WRIST, BehaviorCall, Execution, ExecutionStatus
+from affcli.core.behavior import BehaviorCall, Execution, ExecutionStatus
 from affcli.core.change_detection import change_detected
+from affcli.core.geometry import Point
 from affcli.core.observation import Observation
-from affcli.core.ports import Experimenter, Robot, Sensor
+from affcli.core.ports import Experimenter, Explorer, Robot, Sensor
 from affcli.core.trial import BabblingRecord
 from affcli.errors import BadInputError
 
@@ -17,26 +19,10 @@ MOST_RESETS = 1_000
 """In a row, before one behavior; with sensible settings one is enough."""
 
 
-@dataclass(frozen=True, slots=True)
-class BabblingSettings:
-    """Where babbling puts the attractor relative to the wrist: one box that serves all tools.
-
-    The robot knows nothing of the tool's shape (§4), so the box is that of what any tool might
-    touch. Inches, in the wrist's frame.
-    """
-
-    offset_x_max: float = 7.5
-    """|x| of position wrist is at most this."""
-    offset_y_min: float = 6.8
-    offset_y_max: float = 19.2
-    draws: int = 256
-    """After this many wrist positions in vain the attractor is put back, as if out of reach."""
-
-
 @dataclass(slots=True)
 class BabblingState:
-    """Where babbling stands between two behaviors; with the random streams all that it needs to
-    go on.
+    """Where babbling stands between two behaviors; with the random streams and the explorer's own
+    state all that it needs to go on.
 
     Args:
         step: behaviors executed so far.
@@ -54,23 +40,18 @@ def babble(
     sensor: Sensor,
     experimenter: Experimenter,
     binding: BehaviorCall,
-    exploratory: Sequence[BehaviorCall],
-    settings: BabblingSettings,
-    rng: np.random.Generator,
+    explorer: Explorer,
     state: BabblingState,
 ) -> Iterator[BabblingRecord]:
-    """Try random behaviors at random wrist positions, without end.
+    """Try behaviors at wrist positions that the explorer chooses, without end.
 
-    Each time: the experimenter puts the attractor back if it is out of the tool's reach; a random
-    position wrist; a random behavior with a random value of its parameter; a row if the change
-    detection function T is 1, with both counters 1 (§3.2).
+    Each time: the experimenter puts the attractor back if it is out of the tool's reach; position
+    wrist; a behavior; a row if the change detection function T is 1, with both counters 1 (§3.2).
 
     Args:
         robot, sensor, experimenter: the world as the robot meets it.
         binding: the binding behavior, executed once at the start.
-        exploratory: the calls to draw from, with equal chances.
-        settings: the box of wrist offsets.
-        rng: the robot's choices.
+        explorer: chooses what to try, and is told what came of it.
         state: updated in place before each record is yielded.
     """
     if not state.grasped:
@@ -92,44 +73,56 @@ def babble(
                 state.seen = None
                 resets += 1
             state.seen = state.seen or sensor.observe()
-            placing, blocked = _place_at_random(robot, state.seen, settings, rng)
+            placing, blocked = _place(robot, state.seen, explorer)
             redraws += blocked
             lost = placing is None
         start = sensor.observe()
-        call = exploratory[int(rng.integers(len(exploratory)))]
+        call = explorer.behavior(Point(placing.call["x"], placing.call["y"]), start)
         execution = robot.execute(call, start)
         end = sensor.observe()
         state.step += 1
         state.seen = end
-        truncated = execution.status is ExecutionStatus.TRUNCATED
-        row = (
-            Affordance(state.step, binding, call, start, end, truncated)
-            if change_detected(start, end)
-            else None
-        )
-        yield BabblingRecord(
+        row = _row(state.step, binding, execution, start, end)
+        record = BabblingRecord(
             state.step, robot.clock, resets, redraws, placing, execution, start, end, row
         )
+        explorer.tell(record)
+        yield record
 
 
-def _place_at_random(
-    robot: Robot, seen: Observation, settings: BabblingSettings, rng: np.random.Generator
-) -> tuple[Execution | None, int]:
-    """Draw wrist offsets until one is in reach and the tool comes down clear of the attractor.
+def _row(
+    step: int, binding: BehaviorCall, execution: Execution, start: Observation, end: Observation
+) -> Affordance | None:
+    """Return the row that a behavior makes; None when T = 0."""
+    if not change_detected(start, end):
+        return None
+    before, after = execution.wrist_start, execution.wrist_end
+    return Affordance(
+        step,
+        binding,
+        execution.call,
+        start,
+        end,
+        truncated=execution.status is ExecutionStatus.TRUNCATED,
+        wrist_angle=before.angle,
+        travel=Point(after.x - before.x, after.y - before.y),
+    )
+
+
+def _place(robot: Robot, seen: Observation, explorer: Explorer) -> tuple[Execution | None, int]:
+    """Ask for wrist offsets until one is in reach and the tool comes down clear of the attractor.
 
     Returns:
-        The position wrist executed, None when all draws were in vain; and how many were blocked.
+        The position wrist executed, None when all were in vain; and how many were blocked.
     """
-    width = settings.offset_x_max
-    low, high = settings.offset_y_min, settings.offset_y_max
-    drawn = rng.random((settings.draws, 2))
-    x = (2.0 * drawn[:, 0] - 1.0) * width
-    y = low + drawn[:, 1] * (high - low)
+    places = explorer.places(seen)
+    x, y = places[:, 0], places[:, 1]
     blocked = 0
     for i in np.flatnonzero(robot.reaches(seen.object_x - x, seen.object_y - y)):
-        call = BehaviorCall.of(POSITION_WRIST, {"x": float(x[i]), "y": float(y[i])})
-        placing = robot.execute(call, seen)
+        place = Point(float(x[i]), float(y[i]))
+        placing = robot.execute(position_wrist(place), seen)
         if placing.status is ExecutionStatus.DONE:
             return placing, blocked
+        explorer.refused(place)
         blocked += 1
     return None, blocked

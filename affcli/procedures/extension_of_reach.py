@@ -5,12 +5,11 @@ from dataclasses import dataclass
 
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.behavior import BehaviorCall
+from affcli.core.choice import Situation
 from affcli.core.observation import Observation
-from affcli.core.ports import Experimenter, Robot, Sensor
-from affcli.core.task import GoalRegion
+from affcli.core.ports import Experimenter, Goal, Planner, Robot, Sensor
 from affcli.core.trial import Outcome, StepRecord, TrialEnd
 from affcli.errors import SimulationDivergedError
-from affcli.planning.nested_query import Choose, choose_row
 from affcli.procedures.attempt import attempt
 
 
@@ -29,13 +28,13 @@ def extension_of_reach(
     table: AffordanceTable,
     binding: BehaviorCall,
     limits: TrialLimits,
-    choose: Choose = choose_row,
+    planner: Planner,
 ) -> Generator[StepRecord, None, TrialEnd]:
     """Bring the attractor over the goal region, one behavior at a time.
 
-    Observe; done if the attractor is over the goal; choose a row by the nested searches; position
-    the wrist so that the attractor stands to it as in the row's O^s; run the row's behavior;
-    observe; count the use of the row and whether it replicated; again.
+    Observe; done if the attractor is over the goal; let the planner choose a row; position the
+    wrist so that the attractor stands to it as in the row's O^s; run the row's behavior; observe;
+    count the use of the row and whether it replicated; again.
 
     The flowchart itself (Fig. 7) is lost with the paper's figures; this follows §5 and §6.2.
 
@@ -44,7 +43,7 @@ def extension_of_reach(
         table: what the robot learned. Its counters are updated as the trial goes on (§3.2).
         binding: the binding behavior, executed once at the start.
         limits: when to give up.
-        choose: the nested searches.
+        planner: chooses the rows.
 
     Yields:
         A record of each step, after the counters were updated.
@@ -56,12 +55,12 @@ def extension_of_reach(
     seen = sensor.observe()
     goal = sensor.observe_goal()
     for number in range(1, limits.max_steps + 1):
-        if goal.contains(seen.object_position):
+        if goal.reached(seen):
             return TrialEnd(Outcome.SOLVED, number - 1, robot.clock)
         if experimenter.attractor_out_of_reach():
             return TrialEnd(Outcome.ATTRACTOR_OUT_OF_REACH, number - 1, robot.clock)
         try:
-            step = _step(number, robot, sensor, table, seen, goal, choose)
+            step = _step(number, robot, sensor, table, seen, goal, planner)
         except SimulationDivergedError:
             # Kept as a trial of its own kind, which counts neither as solved nor as failed.
             return TrialEnd(Outcome.INVALID, number - 1, robot.clock)
@@ -69,7 +68,7 @@ def extension_of_reach(
             return step
         yield step
         seen = step.end
-    solved = goal.contains(seen.object_position)
+    solved = goal.reached(seen)
     outcome = Outcome.SOLVED if solved else Outcome.STEP_LIMIT
     return TrialEnd(outcome, limits.max_steps, robot.clock)
 
@@ -80,13 +79,21 @@ def _step(
     sensor: Sensor,
     table: AffordanceTable,
     seen: Observation,
-    goal: GoalRegion,
-    choose: Choose,
+    goal: Goal,
+    planner: Planner,
 ) -> StepRecord | TrialEnd:
     """Choose a row, try it, judge it, count it; or end the trial when no row is left."""
-    choice = choose(table, seen, goal, robot)
+    situation = Situation(table, seen, goal, robot.wrist, robot.reaches, robot.holding)
+    choice = planner.choose(situation)
     if choice.position is None:
-        return TrialEnd(Outcome.NO_ROW, number - 1, robot.clock, choice.survivors)
-    use = attempt(robot, sensor, table.row(choice.position), seen)
+        return TrialEnd(Outcome.NO_ROW, number - 1, robot.clock, choice.reasons)
+    use = attempt(
+        robot,
+        sensor,
+        table.row(choice.position),
+        seen,
+        angle_degrees=planner.angle_degrees,
+        threshold=planner.threshold,
+    )
     table.count_use(choice.position, success=use.replicated)
-    return StepRecord(**use.by_name(), number=number, clock=robot.clock, survivors=choice.survivors)
+    return StepRecord(**use.by_name(), number=number, clock=robot.clock, reasons=choice.reasons)

@@ -65,8 +65,7 @@ def _situation_for(
     for _ in range(MOST_PLACES):
         experimenter.put_attractor_for(row)
         seen = sensor.observe()
-        wrist = (seen.object_x - offset.x, seen.object_y - offset.y)
-        if robot.reaches(*(np.array([c]) for c in wrist)).all():
+        if robot.reaches(*(np.array([c]) for c in seen.wrist_for(offset))).all():
             return seen
     raise BadInputError(
         f"row {row.step} ({row.exploratory}): {MOST_PLACES} places in a row were out of the arm's "

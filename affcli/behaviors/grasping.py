@@ -1,0 +1,45 @@
+"""The binding behavior: the hand takes the tool by its handle (§5.1)."""
+
+import math
+
+from affcli.core.behavior import GRASP, BehaviorCall
+from affcli.core.part import Param, Part
+from affcli.core.tool import Hold
+from affcli.core.workspace import ToolGeometry
+
+
+def grasp(
+    geometry: ToolGeometry, *, grasp_point: float | None = None, angle: float = 0.0
+) -> BehaviorCall:
+    """Return the call that grasps the handle.
+
+    Args:
+        geometry: where the paper's own grasp point is, for a call that names none.
+        grasp_point: along the handle from its lower end (in).
+        angle: by how much the tool is turned in the hand (degrees, counter-clockwise).
+    """
+    point = geometry.handle_below_grasp if grasp_point is None else grasp_point
+    return BehaviorCall.of(GRASP, {"grasp_point": point, **({"angle": angle} if angle else {})})
+
+
+def hold_of(binding: BehaviorCall) -> Hold:
+    """Return how a grasp holds the tool."""
+    return Hold(binding["grasp_point"], math.radians(binding.get("angle", 0.0)))
+
+
+PARTS = (
+    Part(
+        kind="bindings",
+        name="grasp",
+        summary="the hand takes the handle at a point, the tool straight ahead or turned",
+        source="Stoytchev 2008, §5.1",
+        build=grasp,
+        params=(
+            Param(
+                *("grasp_point", None, "in", 0.0, 14.0),
+                "along the handle from its lower end; the paper's if not given",
+            ),
+            Param("angle", 0.0, "degrees", -180.0, 180.0, "the tool turned in the hand"),
+        ),
+    ),
+)

@@ -1,0 +1,88 @@
+"""What a planner is given, and what it answers: a row, and the reasons for it (§6.2)."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from affcli.core.affordance_table import AffordanceTable
+from affcli.core.behavior import BehaviorCall
+from affcli.core.geometry import Pose
+from affcli.core.observation import Observation
+
+if TYPE_CHECKING:
+    from affcli.core.ports import Goal
+
+Reaches = Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.bool_]]
+"""Tells for each wrist position (n,), (n,) (in, table frame) whether the arm can set the tool down
+there."""
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """Where a robot stands when it chooses, or would stand after an imagined move.
+
+    Args:
+        table: what it learned, with its counters as they are now.
+        seen: the latest observation.
+        goal: as the robot saw it.
+        wrist: where the wrist is (in, rad, table frame).
+        reaches: which wrist positions can be taken up.
+        holding: the binding behavior by which the tool is held; None when that is not known.
+    """
+
+    table: AffordanceTable
+    seen: Observation
+    goal: "Goal"
+    wrist: Pose
+    reaches: Reaches
+    holding: BehaviorCall | None = None
+
+
+class Reason(NamedTuple):
+    """One thing that a planner went by, in the order in which it did.
+
+    Args:
+        name: what, in a word: ``probable``.
+        rows: how many rows it left; None when it left none out.
+        value: the number it went by, where there is one (in, or a share).
+    """
+
+    name: str
+    rows: int | None = None
+    value: float | None = None
+
+    def as_json(self) -> dict[str, Any]:
+        """Return the reason as JSON types."""
+        return self._asdict()
+
+
+Reasons = tuple[Reason, ...]
+
+
+class Candidate(NamedTuple):
+    """A row that a planner weighed.
+
+    Args:
+        position: its position in the table.
+        expected_distance: how far from the goal's centre it expects to leave the attractor (in).
+        repositioning: how far the wrist would travel to use it (in).
+    """
+
+    position: int
+    expected_distance: float
+    repositioning: float
+
+
+class Choice(NamedTuple):
+    """What a planner answers.
+
+    Args:
+        position: of the row chosen in the table; None when no row is left.
+        reasons: what it went by, an open list.
+    """
+
+    position: int | None
+    reasons: Reasons

@@ -1,0 +1,111 @@
+"""What makes two runs the same: named parts with what differs in them, and a key by hash.
+
+A run is a pure function of its spec. The spec names each part by a `Component`: a versioned name and
+the parameters that differ from the part's defaults. So a new parameter with a default changes no
+key. The key of a spec is the SHA-256 of its canonical JSON.
+"""
+
+import hashlib
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from affcli.errors import BadInputError, one_line
+
+Value = str | float
+"""A parameter's value: a number or a word."""
+
+LONGEST_TEXT = 2_000
+"""Letters of a part written as text; the longest that affcli writes has some 100."""
+
+_NAME = re.compile(r"[a-z0-9][a-z0-9._-]*")
+_KEY = re.compile(r"[a-z][a-z0-9_]*")
+
+
+@dataclass(frozen=True, slots=True)
+class Component:
+    """A part by its name, its version, and the parameters that differ from its defaults.
+
+    Args:
+        name: as the registry knows it: ``nested-query``.
+        params: (name, value) pairs in alphabetical order, only those that are not the default.
+        version: raised when the same parameters give other results.
+    """
+
+    name: str
+    params: tuple[tuple[str, Value], ...] = ()
+    version: int = 1
+
+    @classmethod
+    def of(cls, name: str, params: Mapping[str, Value], version: int = 1) -> "Component":
+        """Build a component from a mapping of parameters."""
+        return cls(name, tuple(sorted(params.items())), version)
+
+    @classmethod
+    def parse(cls, text: str) -> "Component":
+        """Return the component that ``name:key=value,key=value`` stands for.
+
+        A version other than 1 follows the name: ``name@2:key=value``. Numbers become floats.
+
+        Raises:
+            BadInputError: the text is not of this form.
+        """
+        form = f"{one_line(text, 60)!r} is not of the form name:key=value,key=value"
+        head, colon, tail = text[: LONGEST_TEXT + 1].partition(":")
+        name, at, version = head.partition("@")
+        numbered = version.isdecimal() and 0 < len(version) < 6 if at else True
+        if len(text) > LONGEST_TEXT or not _NAME.fullmatch(name) or not numbered:
+            raise BadInputError(form)
+        params: dict[str, Value] = {}
+        for pair in tail.split(",") if colon else ():
+            key, equals, value = pair.partition("=")
+            if not (equals and value and _KEY.fullmatch(key)) or key in params:
+                raise BadInputError(form)
+            params[key] = _value(value)
+        return cls.of(name, params, int(version) if at else 1)
+
+    def __str__(self) -> str:
+        """Write the component as `parse` reads it."""
+        head = self.name if self.version == 1 else f"{self.name}@{self.version}"
+        pairs = [f"{key}={shown(value)}" for key, value in self.params]
+        return f"{head}:{','.join(pairs)}" if pairs else head
+
+    def canonical(self) -> dict[str, Any]:
+        """Return the component as JSON types, for the key of a spec."""
+        return {"name": self.name, "params": dict(self.params), "version": self.version}
+
+
+def shown(value: Value) -> str:
+    """Write a parameter's value as short as it can be read back exactly."""
+    if isinstance(value, str):
+        return value
+    short = f"{value:g}"
+    return short if float(short) == value else repr(float(value))
+
+
+def canonical_json(value: Any) -> str:
+    """Return `value` as canonical JSON: equal values give equal text."""
+    return json.dumps(value, sort_keys=True, separators=(",", ":"), allow_nan=False)
+
+
+def key_of(canonical: Mapping[str, Any]) -> str:
+    """Return the key of a spec: the SHA-256 of its canonical form (64 hexadecimal digits)."""
+    return hashlib.sha256(canonical_json(canonical).encode()).hexdigest()
+
+
+def stream_number(name: str) -> int:
+    """Return the word of 32 bits by which a name enters the key of a random stream.
+
+    It is the same everywhere and always.
+    """
+    return int.from_bytes(hashlib.sha256(name.encode()).digest()[:4], "big")
+
+
+def _value(text: str) -> Value:
+    """Return a number where the text is one, else the text."""
+    try:
+        return float(text)
+    except ValueError:
+        return text

@@ -1,0 +1,84 @@
+"""Motions: what an exploratory behavior asks of the wrist, as segments one after the other (§5).
+
+A motion is told from where the wrist is when it begins. Its directions are the table's axes, not
+those of the hand: so are the offsets between wrist and attractor that the robot observes (o4 to o6,
+§5.2), and a row can be done again from the same offset only when both are told in the same axes. A
+row carries the wrist's angle, and position wrist restores it; at an equal angle the two choices say
+the same.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+from affcli.core.geometry import Pose
+
+
+@dataclass(frozen=True, slots=True)
+class Slide:
+    """Slide the tool on the table along a straight line, the wrist's angle held.
+
+    Args:
+        dx, dy: how far (in, table frame).
+    """
+
+    dx: float
+    dy: float
+
+
+@dataclass(frozen=True, slots=True)
+class Carry:
+    """Lift the tool, carry it over the table, and lower it there.
+
+    Args:
+        to: where the wrist is to be (in, rad, table frame).
+    """
+
+    to: Pose
+
+
+@dataclass(frozen=True, slots=True)
+class Wait:
+    """Keep the wrist where it is.
+
+    Args:
+        seconds: for how long.
+    """
+
+    seconds: float
+
+
+Segment = Slide | Carry | Wait
+Motion = tuple[Segment, ...]
+
+
+def motion_json(motion: Motion) -> list[list[Any]]:
+    """Return a motion as JSON types: ``[["slide", 0.0, 5.0], ["wait", 1.0]]``."""
+    return [_segment_json(segment) for segment in motion]
+
+
+def motion_from_json(value: Any) -> Motion:
+    """Return the motion that `motion_json` wrote; ValueError when it wrote none such."""
+    made: list[Segment] = []
+    for kind, *numbers in value:
+        given = [float(number) for number in numbers]
+        match kind, given:
+            case "slide", [dx, dy]:
+                made.append(Slide(dx, dy))
+            case "carry", [x, y, angle]:
+                made.append(Carry(Pose(x, y, angle)))
+            case "wait", [seconds]:
+                made.append(Wait(seconds))
+            case _:
+                raise ValueError(f"no segment {kind!r} of {len(given)} numbers")
+    return tuple(made)
+
+
+def _segment_json(segment: Segment) -> list[Any]:
+    """Return one segment as JSON types."""
+    match segment:
+        case Slide(dx, dy):
+            return ["slide", dx, dy]
+        case Carry(to):
+            return ["carry", *to]
+        case Wait(seconds):
+            return ["wait", seconds]

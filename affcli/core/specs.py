@@ -1,0 +1,216 @@
+"""What learning runs, testing trials and verifications are pure functions of.
+
+A spec carries every part by value or by a versioned name, so that whatever the registry holds
+later, a stored run can be shown, gone on with and done again.
+"""
+
+import json
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+from typing import Any
+
+from affcli.core.behavior import BehaviorCall, Repertoire, repertoire_json
+from affcli.core.geometry import Pose
+from affcli.core.identity import Component, key_of
+from affcli.core.observation import SensorKind
+from affcli.core.task import Task
+from affcli.core.tool import Tool
+from affcli.core.trial import BabblingRecord, TrialEnd, TrialStep, Truth
+
+LARGEST_SEED = 2**63 - 1
+LONGEST_HOURS = 10_000.0
+MOST_BEHAVIORS = 10_000_000
+MOST_ROBOTS = 100_000
+
+
+class Protocol(StrEnum):
+    """What a testing trial is part of."""
+
+    EXTENSION_OF_REACH = "extension of reach"
+    """§7.1: the tool is what it was when its table was learned."""
+    TOOL_ADAPTATION = "tool adaptation"
+    """§7.2: another shape in the colour of the tool that was learned."""
+
+
+BROKEN_TOOL, BROKEN_SHAPE = "t-hook", "l-hook"
+"""§7.2: the learning was performed with a T-hook which was then replaced with an L-hook."""
+
+
+class Counters(StrEnum):
+    """Which counters a trial starts from and where its updates go."""
+
+    STORED = "stored"
+    """From the table as it is in the store; every step updates it there."""
+    AS_LEARNED = "as learned"
+    """From the table as learned; the trial keeps its counters in its own steps."""
+
+
+@dataclass(frozen=True)
+class LearningSpec:
+    """What a learning run is a pure function of.
+
+    Args:
+        held: the tool, by value.
+        seed: 0 to 2^63 - 1.
+        robot: which of many robots that share the seed; 0 for the first.
+        hours: robot hours to babble for; None when `behaviors` is given.
+        behaviors: how many behaviors to execute; None when `hours` is given.
+        settings: those that differ from the defaults, as canonical JSON (see `affcli.config`).
+        world: where it takes place.
+        repertoire: the exploratory behaviors, by value.
+        binding: how the tool is held.
+        explorer: how the robot chooses what to try next.
+        sensor: through what the robot sees.
+    """
+
+    held: Tool
+    seed: int
+    robot: int
+    hours: float | None
+    behaviors: int | None
+    settings: str
+    world: Component
+    repertoire: Repertoire
+    binding: BehaviorCall
+    explorer: Component
+    sensor: SensorKind
+
+    @property
+    def tool(self) -> str:
+        """The name of the tool."""
+        return self.held.name
+
+    @cached_property
+    def key(self) -> str:
+        """The key of the run: equal specs have equal keys, whatever version of affcli wrote them."""
+        return key_of(self.canonical())
+
+    def canonical(self) -> dict[str, Any]:
+        """Return the spec as JSON types; what a key is made of, so it must never change."""
+        return {
+            "behaviors": self.behaviors,
+            "binding": {"name": self.binding.name, "params": dict(self.binding.params)},
+            "explorer": self.explorer.canonical(),
+            "hours": self.hours,
+            "repertoire": repertoire_json(self.repertoire),
+            "robot": self.robot,
+            "seed": self.seed,
+            "sensor": self.sensor,
+            "settings": json.loads(self.settings),
+            "tool": self.held.canonical(),
+            "world": self.world.canonical(),
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class TrialSpec:
+    """What a testing trial is a pure function of, beside the table it starts from.
+
+    Args:
+        protocol: what it is part of.
+        tool: the tool the robot believes to hold: the one whose table it uses.
+        held: the tool it truly holds, by value, in its own colour; another one when it broke.
+        task: the goal and the start.
+        seed: 0 to 2^63 - 1.
+        robot: which of many robots that share the seed.
+        counters: which counters it starts from and where updates go.
+        planner: how the robot chooses a row.
+        sensor: through what the robot sees.
+        world: where it takes place.
+    """
+
+    protocol: Protocol
+    tool: str
+    held: Tool
+    task: Task
+    seed: int
+    robot: int
+    counters: Counters
+    planner: Component
+    sensor: SensorKind
+    world: Component
+
+    @property
+    def shape(self) -> str:
+        """The name of the tool truly held."""
+        return self.held.name
+
+    @property
+    def goal(self) -> str:
+        """The name of the goal."""
+        return self.task.goal.name
+
+    @property
+    def start(self) -> str:
+        """The name of the start."""
+        return self.task.start_name
+
+
+@dataclass(frozen=True, slots=True)
+class VerificationSpec:
+    """What a verification is a pure function of, beside the table it starts from.
+
+    Args:
+        tool: the tool the robot believes to hold: the one whose table is tested.
+        held: the tool it truly holds, by value; another one when the tool changed.
+        seed: 0 to 2^63 - 1.
+        robot: which of many robots that share the seed.
+        sensor: through what the robot sees.
+        tries: how many are made, at most.
+        until_verdict: it ends with the first verdict.
+    """
+
+    tool: str
+    held: Tool
+    seed: int
+    robot: int
+    sensor: SensorKind
+    tries: int
+    until_verdict: bool
+
+    @property
+    def shape(self) -> str:
+        """The name of the tool truly held."""
+        return self.held.name
+
+
+LearningStep = tuple[BabblingRecord, Truth | None]
+"""What one behavior of a learning run gave, and what truly happened where the world can tell."""
+
+RowStarts = dict[int, tuple[Pose, Pose]]
+"""Where wrist and attractor truly were when each row of a table was made, by its learning step."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrialRecord:
+    """A whole testing trial.
+
+    Args:
+        spec: what it was a function of.
+        steps: what was done.
+        end: how it ended.
+        calibration: of the camera it saw through, as JSON; None without one.
+    """
+
+    spec: TrialSpec
+    steps: tuple[TrialStep, ...]
+    end: TrialEnd
+    calibration: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class RobotRecord:
+    """The life of one robot of a reproduction: what it learned, and its testing trials.
+
+    Args:
+        robot: its number.
+        learned: for each tool the spec, the steps and the robot seconds of its learning run.
+        trials: all its testing trials.
+        calibration: of its camera, as JSON; None without one.
+    """
+
+    robot: int
+    learned: tuple[tuple[LearningSpec, tuple[LearningStep, ...], float], ...]
+    trials: tuple[TrialRecord, ...]
+    calibration: str | None = None

@@ -1,0 +1,1 @@
+"""What to try next while learning, one file a way; the registry finds explorers by PARTS."""

@@ -1,0 +1,1 @@
+"""The sets of tasks on the simulated table, one file a set; the registry finds them by PARTS."""
