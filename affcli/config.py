@@ -13,7 +13,7 @@ from affcli.errors import BadInputError, one_line
 from affcli.perception.camera_settings import CameraSettings
 from affcli.perception.noisy_sensor import SensorSettings
 from affcli.perception.palette import ColorClass, Role, palette, paper_palette
-from affcli.procedures.babbling import BabblingSettings
+from affcli.core.babbling_box import BabblingSettings
 from affcli.procedures.extension_of_reach import TrialLimits
 from affcli.simulation.physics_settings import PhysicsSettings
 

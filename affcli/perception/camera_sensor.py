@@ -1,6 +1,6 @@
 """The robot's eye: picture, segmentation and calibration give the observation vector (§4, §5.2)."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import cv2
@@ -10,13 +10,14 @@ from affcli.core.geometry import Point
 from affcli.core.observation import Observation
 from affcli.core.scene import Scene
 from affcli.core.task import GoalRegion
+from affcli.core.tool import Color
 from affcli.core.workspace import Workspace
 from affcli.errors import BadInputError
 from affcli.perception.calibration import Calibration, calibrate
 from affcli.perception.camera_settings import CameraSettings
 from affcli.perception.location import Locator
 from affcli.perception.markers import Pattern, find_markers
-from affcli.perception.palette import MARKER_COLOR, paper_palette
+from affcli.perception.palette import MARKER_COLOR, table_palette
 from affcli.perception.rendering import Picture, Renderer
 from affcli.perception.segmentation import Segmenter
 from affcli.perception.solids import circle
@@ -52,12 +53,18 @@ class Eye:
     locator: Locator
 
 
-def power_up(settings: CameraSettings, workspace: Workspace, rng: np.random.Generator) -> Eye:
+def power_up(
+    settings: CameraSettings,
+    workspace: Workspace,
+    tools: Mapping[str, Color],
+    rng: np.random.Generator,
+) -> Eye:
     """Switch the camera on and calibrate it, as is done every time (§4).
 
     Args:
         settings: of the simulated camera. The robot knows only its image sensor.
         workspace: what stands on the table.
+        tools: the colour of each tool that may be on it, by name.
         rng: decides the noise in the picture of the pattern.
 
     Raises:
@@ -74,7 +81,7 @@ def power_up(settings: CameraSettings, workspace: Workspace, rng: np.random.Gene
         raise BadInputError(f"camera: {error}; see the section camera of the settings") from error
     _require_view(settings, workspace)
     locator = Locator(calibration.camera, workspace.puck)
-    return Eye(renderer, calibration, Segmenter(paper_palette(workspace)), locator)
+    return Eye(renderer, calibration, Segmenter(table_palette(workspace, tools)), locator)
 
 
 def table_pattern(settings: CameraSettings, workspace: Workspace) -> Pattern:
@@ -153,7 +160,7 @@ class CameraSensor:
         )
 
     def observe_goal(self) -> GoalRegion:
-        """Return the goal region as seen; its number, which no camera sees, as it was given.
+        """Return the goal region as seen; its name, which no camera sees, as it was given.
 
         Raises:
             LookupError: there is no goal on the table.
@@ -164,4 +171,4 @@ class CameraSensor:
             raise LookupError("there is no goal region on the table")
         seen = self._eye.segmenter.segment(self._eye.renderer.take(scene, self._rng))
         center, half_width = self._eye.locator.goal(seen)
-        return GoalRegion(scene.goal.number, center, half_width)
+        return GoalRegion(scene.goal.name, center, half_width)

@@ -1,11 +1,11 @@
 """The colour classes: what is colour-coded on the table, and how pixels are told apart (§4)."""
 
 import colorsys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from affcli.core.tool import PUCK_COLOR, TOOL_COLORS, Color
+from affcli.core.tool import PUCK_COLOR, Color
 from affcli.core.workspace import Workspace
 from affcli.errors import BadInputError, one_line
 
@@ -100,14 +100,22 @@ def class_of_hue(classes: Sequence[ColorClass], hue: float) -> int | None:
     return None if nearest is None or distances[nearest] > WIDEST_HUE else nearest
 
 
-def paper_palette(workspace: Workspace) -> tuple[ColorClass, ...]:
-    """Return the colours of the simulated table: puck, wrist, goal, and the five tools."""
+def table_palette(workspace: Workspace, tools: Mapping[str, Color]) -> tuple[ColorClass, ...]:
+    """Return the colours of the simulated table: puck, wrist, goal, and the tools.
+
+    Args:
+        workspace: how high things are.
+        tools: the colour of each tool that may be on it, by name.
+
+    Raises:
+        BadInputError: a tool's colour cannot be told from another.
+    """
     tops = workspace.tools.thickness
     return palette(
         (
             ColorClass("puck", PUCK_COLOR, Role.OBJECT, 0.5 * workspace.puck.height),
             ColorClass("wrist", WRIST_COLOR, Role.WRIST, workspace.arm.flange_height),
             ColorClass("goal", GOAL_COLOR, Role.GOAL),
-            *(ColorClass(name, color, Role.TOOL, tops) for name, color in TOOL_COLORS.items()),
+            *(ColorClass(name, color, Role.TOOL, tops) for name, color in tools.items()),
         )
     )

@@ -66,7 +66,7 @@ def layers_of(scene: Scene, workspace: Workspace, camera: Camera) -> list[list[P
     behind: list[Prism] = []
     before: list[Prism] = []
     for outline in scene.tool.outlines:
-        part = outline.moved(scene.wrist.x, scene.wrist.y)
+        part = outline.placed(scene.wrist)
         prism = Prism(
             along_edges(part), scene.lift, scene.lift + workspace.tools.thickness, scene.tool.color
         )
@@ -74,7 +74,7 @@ def layers_of(scene: Scene, workspace: Workspace, camera: Camera) -> list[list[P
         in_front = lifted_over or _in_front(part, puck_center, camera)
         (before if in_front else behind).append(prism)
     flange = workspace.arm.flange_height + scene.lift
-    marker = Prism(circle(scene.wrist, WRIST_MARKER_RADIUS), flange, flange, WRIST_COLOR)
+    marker = Prism(circle(scene.wrist.point, WRIST_MARKER_RADIUS), flange, flange, WRIST_COLOR)
     return [behind, [puck], before, [marker]]
 
 

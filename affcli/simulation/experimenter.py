@@ -9,13 +9,12 @@ import numpy as np
 from affcli.core.affordance import Affordance
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.geometry import Point, Pose
-from affcli.core.observation import Observation
 from affcli.core.task import GoalRegion
 from affcli.core.tool import Tool
 from affcli.errors import BadInputError
 from affcli.simulation.arm import reach_at
 from affcli.simulation.reach_of_tool import touchable
-from affcli.simulation.world import World
+from affcli.simulation.table import Table
 from affcli.simulation.wrist_motion import on_grid, stop_at_edge
 
 PLACEMENTS = 10_000
@@ -23,45 +22,42 @@ PLACEMENTS = 10_000
 
 
 class SimulatedExperimenter:
-    """Serves the robot in the simulated world, behind the `Experimenter` protocol.
+    """Serves the robot at the simulated table; an `Experimenter`.
 
     Args:
-        world: what it sees and sets.
+        table: what it sees and sets.
         rng: where it puts things.
     """
 
-    def __init__(self, world: World, rng: np.random.Generator) -> None:
-        self._world = world
+    def __init__(self, table: Table, rng: np.random.Generator) -> None:
+        self._table = table
         self._rng = rng
-        arm = world.workspace.arm
+        arm = table.workspace.arm
         self._reach = reach_at(arm, arm.flange_height)
         self._lifted = reach_at(arm, arm.flange_height + arm.lift_height)
 
     def lay_out_learning(self, tool: Tool) -> None:
         """Begin a learning run: tool and attractor at random positions, no goal (§6)."""
-        world = self._world
-        world.tool = tool
-        world.goal = None
-        world.wrist = self._random_wrist()
+        self._table.put_down(tool)
+        self._table.goal = None
+        self._table.wrist = self._random_wrist()
         self.put_attractor_back()
 
     def lay_out_trial(self, tool: Tool, start: Point, goal: GoalRegion) -> None:
         """Begin a testing trial: tool at the table's centre, attractor at a start (§7.1)."""
-        world = self._world
-        world.tool = tool
-        world.goal = goal
-        world.wrist = world.home
-        world.attractor = Pose(start.x, start.y)
+        self._table.put_down(tool)
+        self._table.goal = goal
+        self._table.wrist = self._table.home
+        self._table.attractor = Pose(start.x, start.y)
 
     def lay_out_verification(self, tool: Tool) -> None:
         """Begin a verification: tool at the table's centre, no goal (§8).
 
         The attractor comes with the first `put_attractor_for`.
         """
-        world = self._world
-        world.tool = tool
-        world.goal = None
-        world.wrist = world.home
+        self._table.put_down(tool)
+        self._table.goal = None
+        self._table.wrist = self._table.home
 
     def attractor_out_of_reach(self) -> bool:
         """Tell whether no behavior from any wrist position can touch the attractor.
@@ -69,10 +65,10 @@ class SimulatedExperimenter:
         A touch counts when it can move the attractor by more than T detects: a tool that can only
         graze it shows the robot nothing. Nothing reaches an attractor pushed over the table's edge.
         """
-        world = self._world
-        point, depth = world.attractor.point, world.workspace.puck.radius - MOVEMENT_THRESHOLD
-        within = touchable(world.tool.outlines, self._reach, point, depth)
-        return not (self._on_table(point) and within)
+        table = self._table
+        point, depth = table.attractor.point, table.workspace.puck.radius - MOVEMENT_THRESHOLD
+        within = touchable(table.outlines, self._reach, point, depth)
+        return not (self._is_on_table(point) and within)
 
     def put_attractor_back(self) -> None:
         """Put the attractor at a random place of the table within the tool's reach and off it.
@@ -80,13 +76,13 @@ class SimulatedExperimenter:
         Raises:
             BadInputError: no such place was found; the geometry leaves no room.
         """
-        world = self._world
+        table = self._table
         for _ in range(PLACEMENTS):
-            world.attractor = Pose(*self._random_place())
-            if world.clear_of_attractor(world.wrist) and not self.attractor_out_of_reach():
+            table.attractor = Pose(*self._random_place())
+            if table.clear_of_attractor(table.wrist) and not self.attractor_out_of_reach():
                 return
         raise BadInputError(
-            f"table: no place within reach of the {world.tool.name} in {PLACEMENTS} tries; bring "
+            f"table: no place within reach of the {table.tool.name} in {PLACEMENTS} tries; bring "
             "table.near, table.far and table.half_width closer to the arm"
         )
 
@@ -104,29 +100,29 @@ class SimulatedExperimenter:
         Raises:
             BadInputError: the arm cannot even do it where it was done.
         """
-        world, offset = self._world, row.start.wrist_to_object
+        table, offset = self._table, row.start.wrist_to_object
         wrist = self._wrist_for(row)
         place = Point(wrist.x + offset.x, wrist.y + offset.y)
-        world.attractor = Pose(place.x, place.y, float(self._rng.uniform(-math.pi, math.pi)))
+        table.attractor = Pose(place.x, place.y, float(self._rng.uniform(-math.pi, math.pi)))
         for _ in range(PLACEMENTS):
-            if world.clear_of_attractor(world.wrist):
+            if table.clear_of_attractor(table.wrist):
                 return
-            world.wrist = self._random_wrist()
+            table.wrist = self._random_wrist()
         raise BadInputError(
-            f"tools: the {world.tool.name} has no place beside the attractor in {PLACEMENTS} "
+            f"tools: the {table.tool.name} has no place beside the attractor in {PLACEMENTS} "
             "tries; make it smaller"
         )
 
     def _wrist_for(self, row: Affordance) -> Point:
         """Return a random wrist position from which `row` can be done again, its own at worst."""
-        offset, travel, own = row.start.wrist_to_object, _travel(row), _wrist(row.start)
+        offset, travel, own = row.start.wrist_to_object, _travel(row), row.start.wrist
         for _ in range(PLACEMENTS):
             place = self._random_place()
             anywhere = Point(place.x - offset.x, place.y - offset.y)
             wrist = self._before_edge(anywhere, travel) if row.truncated else anywhere
             if wrist is None or not self._can_go(wrist, travel):
                 continue
-            if self._on_table(Point(wrist.x + offset.x, wrist.y + offset.y)):
+            if self._is_on_table(Point(wrist.x + offset.x, wrist.y + offset.y)):
                 return wrist
         if not (self._reach.holds(own) and self._lifted.holds(own)):
             raise BadInputError(
@@ -158,31 +154,26 @@ class SimulatedExperimenter:
 
     def _random_place(self) -> Point:
         """Return a random place on the table, uniform."""
-        table = self._world.workspace.table
+        top = self._table.workspace.table
         u, v = self._rng.random(2).tolist()
-        x = (2.0 * u - 1.0) * table.half_width
-        return Point(x, table.near + v * (table.far - table.near))
+        x = (2.0 * u - 1.0) * top.half_width
+        return Point(x, top.near + v * (top.far - top.near))
 
-    def _on_table(self, place: Point) -> bool:
+    def _is_on_table(self, place: Point) -> bool:
         """Tell whether a place lies on the table."""
-        table = self._world.workspace.table
-        return abs(place.x) <= table.half_width and table.near <= place.y <= table.far
+        top = self._table.workspace.table
+        return abs(place.x) <= top.half_width and top.near <= place.y <= top.far
 
-    def _random_wrist(self) -> Point:
+    def _random_wrist(self) -> Pose:
         """Return a random position of the tool's grasp point, uniform over the reach."""
         inner, outer = self._reach.inner, self._reach.outer
         u, v = self._rng.random(2).tolist()
         radius = (inner**2 + u * (outer**2 - inner**2)) ** 0.5
         bearing = (2.0 * v - 1.0) * self._reach.waist_max
-        return Point(on_grid(-radius * math.sin(bearing)), on_grid(radius * math.cos(bearing)))
-
-
-def _wrist(seen: Observation) -> Point:
-    """Return where the wrist was seen (in, table frame)."""
-    return Point(seen.object_x - seen.wrist_to_object_x, seen.object_y - seen.wrist_to_object_y)
+        return Pose(on_grid(-radius * math.sin(bearing)), on_grid(radius * math.cos(bearing)))
 
 
 def _travel(row: Affordance) -> Point:
     """Return how far the wrist went when `row` was made, as it was seen (in, table frame)."""
-    start, end = _wrist(row.start), _wrist(row.end)
+    start, end = row.start.wrist, row.end.wrist
     return Point(end.x - start.x, end.y - start.y)

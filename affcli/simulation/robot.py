@@ -1,19 +1,28 @@
-"""The simulated robot: it executes behaviors in the world and keeps the robot clock."""
+"""The simulated robot: it executes motions on the table and keeps the robot clock."""
 
 import math
-from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from affcli.core.behavior import BehaviorCall, BehaviorName, Execution, ExecutionStatus, WristPath
+from affcli.behaviors.grasping import hold_of
+from affcli.behaviors.positioning import positioning_motion
+from affcli.core.behavior import (
+    GRASP,
+    POSITION_WRIST,
+    BehaviorCall,
+    Execution,
+    ExecutionStatus,
+    Repertoire,
+)
 from affcli.core.geometry import Point, Pose
+from affcli.core.motion import Carry, Motion, Slide, Wait
 from affcli.core.observation import Observation
-from affcli.core.scene import Scene
+from affcli.core.ports import Film
 from affcli.simulation.arm import reach_at
 from affcli.simulation.pushing import Moment
-from affcli.simulation.world import World
+from affcli.simulation.table import Table
 from affcli.simulation.wrist_motion import (
     duration,
     on_grid,
@@ -23,39 +32,36 @@ from affcli.simulation.wrist_motion import (
     trapezoid_travel,
 )
 
-PathMaker = Callable[[BehaviorCall, Point, Observation | None], WristPath]
-
-
-Film = Callable[[float, Scene], None]
-"""Called again and again while a behavior is executed, with the robot clock and the scene."""
 FILM_STEP = 1.0 / 120.0
 """While the tool is carried the film is called this often (robot seconds)."""
 
 
 class SimulatedRobot:
-    """The five-axis arm in the simulated world, behind the `Robot` protocol.
+    """The five-axis arm at the simulated table; a `Robot`.
 
     Args:
-        world: what it acts on.
-        paths: the behavior registry: for each behavior the wrist path it gives.
+        table: what it acts on.
+        repertoire: the exploratory behaviors by value; grasp and position wrist it knows.
     """
 
-    def __init__(self, world: World, paths: Mapping[BehaviorName, PathMaker]) -> None:
-        self._world = world
-        self._paths = paths
-        arm = world.workspace.arm
+    def __init__(self, table: Table, repertoire: Repertoire) -> None:
+        self._table = table
+        self._motions = {one.call: one.motion for one in repertoire}
+        arm = table.workspace.arm
         self._low = reach_at(arm, arm.flange_height)
         self._high = reach_at(arm, arm.flange_height + arm.lift_height)
         self.clock = 0.0
-        self.attractor_before = world.attractor
+        self.holding: BehaviorCall | None = None
+        """The binding behavior by which the tool is held."""
+        self.attractor_before = table.attractor
         """Where the attractor truly was when the last behavior began; not for the robot's eyes."""
         self.film: Film | None = None
         """Shown what happens while a behavior is executed; it changes nothing."""
 
     @property
-    def wrist(self) -> Point:
-        """The wrist now (in, table frame), by the joint encoders."""
-        return self._world.wrist
+    def wrist(self) -> Pose:
+        """The wrist now (in, rad, table frame), by the joint encoders."""
+        return self._table.wrist
 
     def reaches(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Tell for each wrist position (n,), (n,) whether the arm can set the tool down there.
@@ -79,70 +85,95 @@ class SimulatedRobot:
 
     def execute(self, call: BehaviorCall, seen: Observation | None) -> Execution:
         """Execute one behavior to its end (see the protocol in `core.ports`)."""
-        start = self._world.wrist
-        path = self._paths[call.name](call, start, seen)
-        began = self.clock
-        self.attractor_before = self._world.attractor
-        status = self._carry(path) if path.lifted else self._slide(path)
-        return Execution(call, status, start, self._world.wrist, self.clock - began)
+        start, began = self._table.wrist, self.clock
+        self.attractor_before = self._table.attractor
+        status = self._run(self._motion(call, seen))
+        return Execution(call, status, start, self._table.wrist, self.clock - began)
 
-    def _carry(self, path: WristPath) -> ExecutionStatus:
+    def _motion(self, call: BehaviorCall, seen: Observation | None) -> Motion:
+        """Return the motion of a behavior; a grasp takes the tool meanwhile."""
+        if call.name == POSITION_WRIST:
+            return positioning_motion(call, seen)
+        timing = self._table.workspace.motion
+        if call.name == GRASP:
+            first = self.holding is None
+            self._table.take(hold_of(call))
+            self.holding = call
+            return (Wait(timing.grasp_time if first else timing.regrasp_time),)
+        return (*self._motions[call], Wait(timing.hold))
+
+    def _run(self, motion: Motion) -> ExecutionStatus:
+        """Execute the segments of a motion until one of them does not end as asked."""
+        status = ExecutionStatus.DONE
+        for segment in motion:
+            match segment:
+                case Slide(dx, dy) if status is ExecutionStatus.DONE:
+                    status = self._slide(dx, dy)
+                case Carry(to) if status is ExecutionStatus.DONE:
+                    status = self._carry(to)
+                case Wait(seconds):
+                    self.clock += seconds
+                    if self.film is not None:
+                        self.film(self.clock, self._table.scene)
+        return status
+
+    def _carry(self, to: Pose) -> ExecutionStatus:
         """Move lifted and lower the tool; keep it lifted there when the attractor lies under it."""
-        target = Point(on_grid(path.end.x), on_grid(path.end.y))
-        if not (self._low.holds(target) and self._high.holds(target)):
+        target = Pose(on_grid(to.x), on_grid(to.y), to.angle)
+        if not (self._low.holds(target.point) and self._high.holds(target.point)):
             return ExecutionStatus.OUT_OF_REACH
-        travel = math.dist(self._world.wrist, target)
+        timing, height = self._table.workspace.motion, self._table.workspace.arm.lift_height
+        travel = math.dist(self._table.wrist.point, target.point)
         if self.film is not None:
-            self._film_carrying(path, target, self.film)
-        self.clock += path.dwell + trapezoid_time(travel, path.speed, path.acceleration)
-        self._world.wrist = target
-        clear = self._world.clear_of_attractor(target)
+            self._film_carrying(target, self.film)
+        still = 2.0 * height / timing.lift_speed + timing.hold
+        speed, acceleration = timing.transfer_speed, timing.transfer_acceleration
+        self.clock += still + trapezoid_time(travel, speed, acceleration)
+        self._table.wrist = target
+        clear = self._table.clear_of_attractor(target)
         return ExecutionStatus.DONE if clear else ExecutionStatus.BLOCKED
 
-    def _slide(self, path: WristPath) -> ExecutionStatus:
+    def _slide(self, dx: float, dy: float) -> ExecutionStatus:
         """Slide straight on the table, as far as the reach goes."""
-        start = self._world.wrist
-        asked = Point(on_grid(path.end.x), on_grid(path.end.y))
+        start, timing = self._table.wrist.point, self._table.workspace.motion
+        asked = Point(on_grid(start.x + dx), on_grid(start.y + dy))
         end = stop_at_edge(self._low, start, asked)
         distance = math.dist(start, end)
         if distance > 0.0:
-            motion = trapezoid(on_grid(distance), path.speed, path.acceleration)
+            motion = trapezoid(on_grid(distance), timing.push_speed, timing.push_acceleration)
             direction = Point((end.x - start.x) / distance, (end.y - start.y) / distance)
-            watch = None if self.film is None else self._filmed(self.film, start, direction)
-            self._world.slide(direction, end, motion, watch)
+            watch = None if self.film is None else self._filmed(self.film, direction)
+            self._table.slide(direction, end, motion, watch)
             self.clock += duration(motion)
-        self.clock += path.dwell
-        if self.film is not None:
-            self.film(self.clock, self._world.scene)
         return ExecutionStatus.DONE if end == asked else ExecutionStatus.TRUNCATED
 
-    def _filmed(self, film: Film, start: Point, direction: Point) -> Moment:
+    def _filmed(self, film: Film, direction: Point) -> Moment:
         """Return what shows a film each moment of a push that begins now."""
-        began = self.clock
+        began, start = self.clock, self._table.wrist
 
         def watch(elapsed: float, gone: float, puck: Pose) -> None:
             """Show where tool and puck are."""
-            wrist = Point(start.x + gone * direction.x, start.y + gone * direction.y)
-            film(began + elapsed, replace(self._world.scene, attractor=puck, wrist=wrist))
+            x, y = start.x + gone * direction.x, start.y + gone * direction.y
+            wrist = Pose(x, y, start.angle)
+            film(began + elapsed, replace(self._table.scene, attractor=puck, wrist=wrist))
 
         return watch
 
-    def _film_carrying(self, path: WristPath, target: Point, film: Film) -> None:
-        """Show a film how the tool is lifted, carried to `target` and lowered."""
-        motion, height = self._world.workspace.motion, self._world.workspace.arm.lift_height
-        start = self._world.wrist
-        distance = math.dist(start, target)
-        lifting = height / motion.lift_speed
-        travelling = trapezoid_time(distance, path.speed, path.acceleration)
+    def _film_carrying(self, target: Pose, film: Film) -> None:
+        """Show a film how the tool is lifted, carried to `target`, turned on the way, and lowered."""
+        timing, height = self._table.workspace.motion, self._table.workspace.arm.lift_height
+        speed, acceleration = timing.transfer_speed, timing.transfer_acceleration
+        start = self._table.wrist
+        distance = math.dist(start.point, target.point)
+        lifting = height / timing.lift_speed
+        travelling = trapezoid_time(distance, speed, acceleration)
         steps = math.ceil((2.0 * lifting + travelling) / FILM_STEP)
         for elapsed in (FILM_STEP * k for k in range(steps + 1)):
             under_way = min(travelling, max(0.0, elapsed - lifting))
-            gone = trapezoid_travel(under_way, distance, path.speed, path.acceleration)
-            share = gone / distance if distance > 0.0 else 0.0
+            gone = trapezoid_travel(under_way, distance, speed, acceleration)
+            share = gone / distance if distance > 0.0 else 1.0
             lowering = elapsed - lifting - travelling
-            lift = min(elapsed, lifting, lifting - lowering) * motion.lift_speed
-            wrist = Point(
-                start.x + share * (target.x - start.x), start.y + share * (target.y - start.y)
-            )
-            scene = replace(self._world.scene, wrist=wrist, lift=max(0.0, lift))
+            lift = min(elapsed, lifting, lifting - lowering) * timing.lift_speed
+            wrist = Pose(*(a + share * (b - a) for a, b in zip(start, target, strict=True)))
+            scene = replace(self._table.scene, wrist=wrist, lift=max(0.0, lift))
             film(self.clock + elapsed, scene)

@@ -1,0 +1,158 @@
+"""Parts by name: the one place where a name becomes a tool, a behavior, a planner, a world.
+
+A part is found by the tuple PARTS of a file in its room: adding one is adding a file.
+"""
+
+import difflib
+import pkgutil
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cache
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, get_args
+
+from affcli.core.behavior import BehaviorCall, Repertoire
+from affcli.core.identity import Component
+from affcli.core.part import Kind, Part
+from affcli.errors import BadInputError, UsageError, one_line
+
+if TYPE_CHECKING:
+    from affcli.config import Settings
+    from affcli.core.ports import Explorer, Planner, Setting, World
+    from affcli.core.tool import Tool
+    from affcli.core.workspace import ToolGeometry
+
+KINDS: tuple[Kind, ...] = get_args(Kind)
+
+ROOMS: Mapping[Kind, str] = {
+    "tools": "affcli.simulation.tools",
+    "bindings": "affcli.behaviors",
+    "behaviors": "affcli.behaviors",
+    "explorers": "affcli.exploration",
+    "planners": "affcli.planning",
+    "sensors": "affcli.simulation.sensing",
+    "tasks": "affcli.simulation.tasks",
+    "worlds": "affcli.simulation.table_world",
+}
+"""Where the parts of each kind live: a package, whose files are looked through, or one file."""
+
+DEFAULTS: Mapping[str, str] = {
+    "binding": "grasp",
+    "repertoire": "paper",
+    "explorer": "random",
+    "planner": "nested-query",
+    "sensor": "noisy",
+    "task": "extension-of-reach",
+    "world": "table",
+}
+"""What a run carries unless it is told otherwise: the paper's."""
+
+
+@cache
+def parts(kind: Kind) -> Mapping[str, Part]:
+    """Return the parts of a kind by name, in the order in which their files name them."""
+    found = (part for module in _modules(ROOMS[kind]) for part in getattr(module, "PARTS", ()))
+    return {part.name: part for part in found if part.kind == kind}
+
+
+def part(kind: Kind, name: str) -> Part:
+    """Return a part by name.
+
+    Raises:
+        UsageError: there is none such; the message gives the nearest names.
+    """
+    known = parts(kind)
+    if name not in known:
+        singular = kind.removesuffix("s")
+        near = difflib.get_close_matches(name[:40].lower(), known, n=3, cutoff=0.4) or list(known)
+        raise UsageError(
+            f"no {singular} {one_line(name, 60)!r}; did you mean {' or '.join(near)}? "
+            f"(affcli list {kind})"
+        )
+    return known[name]
+
+
+def component(kind: Kind, text: str) -> Component:
+    """Return the component that a user's ``name:key=value,key=value`` stands for, checked.
+
+    Raises:
+        UsageError: no such part.
+        BadInputError: an unknown parameter, a value out of its limits, or another form of text.
+    """
+    given = Component.parse(text)
+    chosen = part(kind, given.name)
+    if given.version not in (1, chosen.version):
+        raise BadInputError(
+            f"{one_line(text, 60)}: this affcli has version {chosen.version} of {chosen.name}; "
+            "leave the version out"
+        )
+    return chosen.component(dict(given.params))
+
+
+def binding(text: str, geometry: "ToolGeometry") -> BehaviorCall:
+    """Return the binding behavior that a text names, for tools of these sizes."""
+    return _built("bindings", component("bindings", text))(geometry)  # type: ignore[no-any-return]
+
+
+def repertoire(texts: Sequence[str]) -> Repertoire:
+    """Return the exploratory behaviors of several parts, in order.
+
+    Raises:
+        UsageError: a behavior comes twice.
+    """
+    chosen: dict[BehaviorCall, Any] = {}
+    for text in texts:
+        for behavior in _built("behaviors", component("behaviors", text))():
+            if behavior.call in chosen:
+                raise UsageError(f"--repertoire {one_line(text, 60)}: {behavior.call} comes twice")
+            chosen[behavior.call] = behavior
+    return tuple(chosen.values())
+
+
+def tool(name: str, geometry: "ToolGeometry") -> "Tool":
+    """Return a tool by name, in these sizes."""
+    return part("tools", name).build(geometry)  # type: ignore[no-any-return]
+
+
+def planner(chosen: Component) -> "Planner":
+    """Return the planner that a component names."""
+    return _built("planners", chosen)()  # type: ignore[no-any-return]
+
+
+def explorer(chosen: Component, setting: "Setting", settings: "Settings") -> "Explorer":
+    """Return the explorer that a component names, for a robot in a setting."""
+    build = _built("explorers", chosen)
+    return build(setting.exploratory, settings.babbling, setting.choices)  # type: ignore[no-any-return]
+
+
+def world(chosen: Component, settings: "Settings") -> "World":
+    """Return the world that a component names."""
+    return _built("worlds", chosen)(settings)  # type: ignore[no-any-return]
+
+
+def _built(kind: Kind, chosen: Component) -> Callable[..., Any]:
+    """Return what builds a part, its parameters given.
+
+    Raises:
+        UsageError: this affcli has no such part.
+        BadInputError: it has another version of it.
+    """
+    found = part(kind, chosen.name)
+    if found.version != chosen.version:
+        raise BadInputError(
+            f"{chosen}: this affcli has version {found.version} of {found.name}; install the "
+            "affcli that made the record"
+        )
+    values = found.values(chosen)
+
+    def build(*given: Any) -> Any:
+        return found.build(*given, **values)
+
+    return build
+
+
+def _modules(home: str) -> Iterator[Any]:
+    """Yield a module, or the files of a package in the order of their names."""
+    module = import_module(home)
+    yield module
+    for info in pkgutil.iter_modules(getattr(module, "__path__", ())):
+        yield import_module(f"{home}.{info.name}")

@@ -1,0 +1,303 @@
+"""The paper's table as a world: laid out for learning, trials and verifications (§4, §6, §7)."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from affcli.behaviors.grasping import hold_of
+from affcli.core.affordance import Affordance, replicates
+from affcli.core.behavior import BehaviorCall
+from affcli.core.geometry import Pose
+from affcli.core.identity import stream_number
+from affcli.core.observation import Movement, SensorKind
+from affcli.core.part import Part
+from affcli.core.ports import Film, Sensor
+from affcli.core.scene import Scene
+from affcli.core.specs import LearningSpec, RowStarts, TrialSpec, VerificationSpec
+from affcli.core.task import Task
+from affcli.core.tool import Tool
+from affcli.core.trial import Truth
+from affcli.core.workspace import Workspace
+from affcli.perception.camera_settings import CameraSettings
+from affcli.perception.noisy_sensor import SensorSettings
+from affcli.simulation.experimenter import SimulatedExperimenter
+from affcli.simulation.physics_settings import PhysicsSettings
+from affcli.simulation.robot import SimulatedRobot
+from affcli.simulation.sensing import SimulatedSight
+from affcli.simulation.table import Table
+from affcli.simulation.tasks import extension_of_reach
+
+VERSION = 1
+"""Of the world: raised when equal specs give other records, by another physics for example."""
+
+LEARNING, TRIAL, VERIFICATION, PREDICTION = 0, 1, 3, 4
+"""First word of a random stream's key: what it is for. 2 is a camera's power-up (`sensing`)."""
+STREAMS = ("choices", "noise", "hand")
+"""The random streams of a setting."""
+STREAM = {"bit_generator": 0, "state": 0, "has_uint32": 2, "uinteger": 2**32}
+"""What the state of a random stream consists of, with the limit of what is a number."""
+FARTHEST = 1e6
+"""No number of a snapshot is larger."""
+
+
+class TableSettings(Protocol):
+    """What of a laboratory's settings this world depends on."""
+
+    @property
+    def workspace(self) -> Workspace:
+        """What stands where, and how large it is."""
+
+    @property
+    def physics(self) -> PhysicsSettings:
+        """How finely the engine solves."""
+
+    @property
+    def sensor(self) -> SensorSettings:
+        """How noisy the noisy sensor is."""
+
+    @property
+    def camera(self) -> CameraSettings:
+        """The simulated camera."""
+
+
+@dataclass(frozen=True, slots=True)
+class TableSetting:
+    """One robot at the table; a `Setting`.
+
+    Args:
+        table: the true state.
+        robot, sensor, experimenter: what the procedures meet.
+        binding: how the robot takes the tool.
+        exploratory: what it can try.
+        streams: the random streams by name: choices, noise, hand.
+        sight: through what it sees.
+    """
+
+    table: Table
+    robot: SimulatedRobot
+    sensor: Sensor
+    experimenter: SimulatedExperimenter
+    binding: BehaviorCall
+    exploratory: tuple[BehaviorCall, ...]
+    streams: dict[str, np.random.Generator]
+    sight: SimulatedSight
+
+    @property
+    def choices(self) -> np.random.Generator:
+        """The random stream of the robot's own choices."""
+        return self.streams["choices"]
+
+    @property
+    def calibration(self) -> str | None:
+        """What its camera's calibration gave, as canonical JSON; None without a camera."""
+        return self.sight.calibration
+
+    def truth(self) -> Truth:
+        """Return where the attractor truly was before and after the last behavior."""
+        return Truth(self.robot.attractor_before, self.table.attractor)
+
+    def scene(self) -> Scene:
+        """Return what is truly on the table now."""
+        return self.table.scene
+
+    def film(self, film: Film | None) -> bool:
+        """Show a film what happens from now on, or stop to."""
+        self.robot.film = film
+        return True
+
+    def snapshot(self) -> dict[str, Any]:
+        """Return, as JSON types, all that is needed to go on from here."""
+        return {
+            "clock": self.robot.clock,
+            "wrist": self.table.wrist,
+            "attractor": self.table.attractor,
+            "streams": {name: s.bit_generator.state for name, s in self.streams.items()},
+        }
+
+    def restore(self, snapshot: Mapping[str, Any]) -> None:
+        """Go on from a snapshot, the tool in the hand.
+
+        Raises:
+            ValueError, KeyError, TypeError: it is none that `snapshot` gives.
+        """
+        wrist, attractor = (_numbers(snapshot[name]) for name in ("wrist", "attractor"))
+        (clock,) = _numbers([snapshot["clock"]])
+        for name in STREAMS:
+            _check_stream(snapshot["streams"][name])
+        self.robot.clock = clock
+        self.table.wrist = Pose(*wrist)
+        self.table.attractor = Pose(*attractor)
+        self.table.take(hold_of(self.binding))
+        self.robot.holding = self.binding
+        for name, stream in self.streams.items():
+            stream.bit_generator.state = snapshot["streams"][name]
+
+
+class TableWorld:
+    """The paper's table; a `World`. Its engines are kept from one setting to the next.
+
+    Args:
+        settings: of everything on it.
+    """
+
+    name = "table"
+    version = VERSION
+    unit = "in"
+    exact_replay = True
+
+    def __init__(self, settings: TableSettings) -> None:
+        self._settings = settings
+        self._table = Table(settings.workspace, settings.physics)
+
+    def packages(self, sensor: SensorKind) -> tuple[str, ...]:
+        """Return the packages whose versions decide the numbers."""
+        seeing = ("opencv-python-headless", "scipy") if sensor == "camera" else ()
+        return ("numpy", "pymunk", *seeing)
+
+    def tasks(self, task_set: str) -> tuple[Task, ...]:
+        """Return the tasks of a set by its name; KeyError when there is none such."""
+        if task_set != extension_of_reach.NAME:
+            raise KeyError(task_set)
+        return extension_of_reach.extension_of_reach(self._settings.workspace.layout)
+
+    def learning(self, spec: LearningSpec, *, laid_out: bool = True) -> TableSetting:
+        """Lay out a learning run (§6); without `laid_out` a snapshot is restored next."""
+        key = (LEARNING, spec.seed, spec.robot, stream_number(spec.tool))
+        setting = self._setting(spec, spec.sensor, spec.seed, *key)
+        if laid_out:
+            setting.experimenter.lay_out_learning(spec.held)
+        else:
+            self._table.put_down(spec.held)
+        return setting
+
+    def trial(self, spec: TrialSpec, learned: LearningSpec) -> TableSetting:
+        """Lay out a testing trial (§7.1) of a robot that learned by `learned`."""
+        names = (stream_number(spec.tool), stream_number(spec.shape))
+        task = (_word(spec.goal), _word(spec.start))
+        key = (TRIAL, spec.seed, spec.robot, *names, *task)
+        setting = self._setting(learned, spec.sensor, spec.seed, *key)
+        held = spec.held.painted(learned.held.color)
+        setting.experimenter.lay_out_trial(held, spec.task.start, spec.task.goal)
+        return setting
+
+    def verification(
+        self, spec: VerificationSpec, learned: LearningSpec, uses: int
+    ) -> TableSetting:
+        """Lay out a verification (§8) of a table whose rows were used so often before."""
+        return self._tested(VERIFICATION, spec, learned, uses)
+
+    def prediction(self, spec: VerificationSpec, learned: LearningSpec) -> TableSetting:
+        """Lay out fresh pushes (§6.1)."""
+        return self._tested(PREDICTION, spec, learned)
+
+    def lost_rows(self, learned: LearningSpec, left: Tool, starts: RowStarts) -> "LostAffordances":
+        """Return who tells which rows were lost when the tool broke to `left`."""
+        return LostAffordances(self._settings, learned, left, starts)
+
+    def _tested(
+        self, purpose: int, spec: VerificationSpec, learned: LearningSpec, *words: int
+    ) -> TableSetting:
+        """Lay out the table with a tool in the colour of the one that was learned."""
+        names = (stream_number(spec.tool), stream_number(spec.shape))
+        key = (purpose, spec.seed, spec.robot, *names, *words)
+        setting = self._setting(learned, spec.sensor, spec.seed, *key)
+        setting.experimenter.lay_out_verification(spec.held.painted(learned.held.color))
+        return setting
+
+    def _setting(
+        self, learned: LearningSpec, sensor: SensorKind, seed: int, *key: int
+    ) -> TableSetting:
+        """Wire a robot at the table, with random streams that depend on the key alone."""
+        settings, table = self._settings, self._table
+        sequence = np.random.SeedSequence(key)
+        streams = {
+            name: np.random.Generator(np.random.PCG64(child))
+            for name, child in zip(STREAMS, sequence.spawn(len(STREAMS)), strict=True)
+        }
+        sight = SimulatedSight(
+            *(sensor, settings.sensor, settings.camera, settings.workspace),
+            *(learned.held, seed, learned.robot),
+        )
+        return TableSetting(
+            table,
+            SimulatedRobot(table, learned.repertoire),
+            sight.sensor(lambda: table.scene, streams["noise"]),
+            SimulatedExperimenter(table, streams["hand"]),
+            learned.binding,
+            tuple(behavior.call for behavior in learned.repertoire),
+            streams,
+            sight,
+        )
+
+
+class LostAffordances:
+    """Which rows a broken tool has truly lost, for the record and never for the robot.
+
+    A row is lost when the broken tool, put where the whole tool was when the row was made and with
+    the attractor where it truly was, no longer gives a movement that replicates the row.
+
+    Args:
+        settings: of the world.
+        learned: how the table was learned.
+        left: the tool that is left.
+        starts: for each row, by its learning step: where the wrist and the attractor truly were.
+    """
+
+    def __init__(
+        self, settings: TableSettings, learned: LearningSpec, left: Tool, starts: RowStarts
+    ) -> None:
+        self._table = Table(settings.workspace, settings.physics)
+        self._table.put_down(left)
+        self._robot = SimulatedRobot(self._table, learned.repertoire)
+        self._starts = starts
+        self._known: dict[int, bool] = {}
+
+    def lost(self, row: Affordance) -> bool:
+        """Tell whether `row` was lost; simulated once for each row."""
+        if row.step not in self._known:
+            table = self._table
+            table.take(hold_of(row.binding))
+            table.wrist, before = self._starts[row.step]
+            table.attractor = before
+            self._robot.execute(row.exploratory, row.start)
+            after = table.attractor
+            seen = Movement(after.x - before.x, after.y - before.y, 0.0)
+            self._known[row.step] = not replicates(row.expected_movement, seen)
+        return self._known[row.step]
+
+
+def _word(name: str) -> int:
+    """Return the word by which a goal or a start enters a stream's key: its number if it is one."""
+    return int(name) if name.isdecimal() and len(name) < 10 else stream_number(name)
+
+
+def _numbers(value: Any) -> list[float]:
+    """Return a list of numbers within bounds; ValueError or TypeError when it is none."""
+    numbers = [float(number) for number in value]
+    if not all(abs(number) <= FARTHEST for number in numbers):
+        raise ValueError("a number out of all bounds")
+    return numbers
+
+
+def _check_stream(value: Any) -> None:
+    """Refuse what is not the state of a random stream, a PCG64."""
+    words = value["state"]
+    numbers = [(words["state"], 2**128), (words["inc"], 2**128)]
+    numbers += [(value[name], limit) for name, limit in STREAM.items() if limit]
+    known = value.keys() == STREAM.keys() and value["bit_generator"] == "PCG64"
+    if not known or not all(isinstance(n, int) and 0 <= n < limit for n, limit in numbers):
+        raise ValueError("no state of a random stream")
+
+
+PARTS = (
+    Part(
+        kind="worlds",
+        name=TableWorld.name,
+        summary="the paper's table: a five-axis arm, a hockey puck, pushing in pymunk",
+        source="Stoytchev 2008, §4",
+        build=TableWorld,
+        version=VERSION,
+    ),
+)
