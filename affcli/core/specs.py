@@ -175,6 +175,56 @@ class VerificationSpec:
         return self.held.name
 
 
+@dataclass(frozen=True)
+class SessionSpec:
+    """What a session of testing trials is a function of, beside the tables it starts from; a
+    reproduction, which learns its own tables, is a function of nothing else.
+
+    Args:
+        kind: which command: ``solve``, ``break-tool`` or ``reproduce``.
+        seed: of all it does.
+        robots: how many; 1 unless it is a reproduction.
+        world, repertoire, binding, explorer: of its learning runs.
+        planner: how the robots choose rows.
+        sensor: through what they see.
+        settings: those that differ from the defaults, as canonical JSON.
+        task_set: the tasks, by the name of their set.
+    """
+
+    kind: str
+    seed: int
+    robots: int
+    world: Component
+    repertoire: Repertoire
+    binding: BehaviorCall
+    explorer: Component
+    planner: Component
+    sensor: SensorKind
+    settings: str
+    task_set: str
+
+    @cached_property
+    def key(self) -> str:
+        """The key of the session; equal specs have equal keys."""
+        return key_of(self.canonical())
+
+    def canonical(self) -> dict[str, Any]:
+        """Return the spec as JSON types; what a key is made of, so it must never change."""
+        return {
+            "binding": {"name": self.binding.name, "params": dict(self.binding.params)},
+            "explorer": self.explorer.canonical(),
+            "kind": self.kind,
+            "planner": self.planner.canonical(),
+            "repertoire": repertoire_json(self.repertoire),
+            "robots": self.robots,
+            "seed": self.seed,
+            "sensor": self.sensor,
+            "settings": json.loads(self.settings),
+            "task_set": self.task_set,
+            "world": self.world.canonical(),
+        }
+
+
 LearningStep = tuple[BabblingRecord, Truth | None]
 """What one behavior of a learning run gave, and what truly happened where the world can tell."""
 

@@ -4,9 +4,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import NamedTuple
 
-from affcli.core.observation import Movement
 from affcli.core.trial import Attempt
 
 INTACT, CHANGED = 0.02, 0.10
@@ -99,28 +97,3 @@ def decided_after(attempts: Iterable[Attempt]) -> int | None:
     if evidence.verdict is Verdict.UNDECIDED:
         return None
     return stages.index(evidence.verdict) + 1
-
-
-class Tried(NamedTuple):
-    """What one try of a stored verification made of a row.
-
-    Args:
-        verification, number: which try.
-        shape: what the robot truly held.
-        expected, seen: movements (in, table frame).
-        replicated: whether it counts as a success.
-        blocked: the tool could not be lowered.
-        died: it took the row out of further consideration.
-        before, after: successes and uses around it.
-    """
-
-    verification: int
-    number: int
-    shape: str
-    expected: Movement
-    seen: Movement
-    replicated: bool
-    blocked: bool
-    died: bool
-    before: tuple[int, int]
-    after: tuple[int, int]
