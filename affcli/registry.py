@@ -31,7 +31,7 @@ ROOMS: Mapping[Kind, str] = {
     "planners": "affcli.planning",
     "sensors": "affcli.simulation.sensing",
     "tasks": "affcli.simulation.tasks",
-    "worlds": "affcli.simulation.table_world",
+    "worlds": "affcli.simulation.worlds",
 }
 """Where the parts of each kind live: a package, whose files are looked through, or one file."""
 

@@ -1,8 +1,8 @@
 """What makes two runs the same: named parts with what differs in them, and a key by hash.
 
-A run is a pure function of its spec. The spec names each part by a `Component`: a versioned name and
-the parameters that differ from the part's defaults. So a new parameter with a default changes no
-key. The key of a spec is the SHA-256 of its canonical JSON.
+A run is a pure function of its spec. The spec names each part by a `Component`: a versioned name
+and the parameters that differ from the part's defaults. So a new parameter with a default changes
+no key. The key of a spec is the SHA-256 of its canonical JSON.
 """
 
 import hashlib

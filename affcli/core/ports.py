@@ -1,4 +1,4 @@
-"""The ports: what a robot, a sensor, an experimenter, a goal, a planner, an explorer and a world are.
+"""The ports: what robot, sensor, experimenter, goal, planner, explorer and world are.
 
 Each contract says what is asked, when, how often, and what holds after a failure. The suites in
 ``affcli.testing`` hold any part, ours or another's, to its contract.
@@ -14,7 +14,7 @@ from affcli.core.affordance import Affordance
 from affcli.core.behavior import BehaviorCall, Execution
 from affcli.core.choice import Candidate, Choice, Situation
 from affcli.core.geometry import ConvexPolygon, Point, Pose
-from affcli.core.observation import Observation
+from affcli.core.observation import Observation, SensorKind
 from affcli.core.trial import BabblingRecord, Truth
 
 if TYPE_CHECKING:
@@ -264,6 +264,9 @@ class World(Protocol):
     @property
     def exact_replay(self) -> bool:
         """Whether doing a run again gives the same record to the bit."""
+
+    def packages(self, sensor: SensorKind) -> tuple[str, ...]:
+        """Return the packages whose versions decide its numbers, seen through a sensor."""
 
     def tasks(self, task_set: str) -> tuple["Task", ...]:
         """Return the tasks of a set by its name; KeyError when it has none such."""

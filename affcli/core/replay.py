@@ -6,8 +6,9 @@ from typing import Any, NamedTuple
 from affcli.core.affordance import Affordance
 from affcli.core.observation import Observation
 from affcli.core.scene import Scene
-from affcli.core.task import GoalRegion
-from affcli.core.trial import BabblingRecord, TrialEnd, TrialSpec, TrialStep, Truth
+from affcli.core.ports import Goal
+from affcli.core.specs import TrialSpec
+from affcli.core.trial import BabblingRecord, TrialEnd, TrialStep, Truth
 from affcli.core.workspace import Workspace
 
 
@@ -29,7 +30,7 @@ class Difference(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Considered:
-    """A row that search 4 chose from (§6.2).
+    """A row that the planner weighed (§6.2).
 
     Args:
         id: the row's number in the store.
@@ -52,14 +53,14 @@ class ReplayedStep:
         step: what the robot did and saw, and what truly happened.
         seen: the observation by which the row was chosen.
         goal: the goal region as the robot saw it.
-        considered: the rows that came closest in search 4, the chosen one first.
+        considered: the rows that came closest, the chosen one first.
         scenes: 15 a robot second, from the query to the end of the behavior.
         placed: how many of the scenes belong to the position wrist.
     """
 
     step: TrialStep
     seen: Observation
-    goal: GoalRegion
+    goal: Goal
     considered: tuple[Considered, ...]
     scenes: tuple[Scene, ...]
     placed: int
@@ -102,6 +103,6 @@ class ReplayedBehavior:
     """
 
     record: BabblingRecord
-    truth: Truth
+    truth: Truth | None
     scenes: tuple[Scene, ...]
     differences: tuple[Difference, ...]

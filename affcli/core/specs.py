@@ -83,7 +83,7 @@ class LearningSpec:
 
     @cached_property
     def key(self) -> str:
-        """The key of the run: equal specs have equal keys, whatever version of affcli wrote them."""
+        """The key of the run: equal specs have equal keys in every version of affcli."""
         return key_of(self.canonical())
 
     def canonical(self) -> dict[str, Any]:

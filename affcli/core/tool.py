@@ -1,8 +1,8 @@
 """Tools by their parts, and how one is held (§4, §5.1, Fig. 1).
 
 Tool frame: origin at the paper's grasp point, y along the handle away from the robot, x to the
-right. Hand frame: origin at the wrist, y where the wrist points. A tool that is held is its parts in
-the hand frame; on the table it is these turned by the wrist's angle and moved to the wrist.
+right. Hand frame: origin at the wrist, y where the wrist points. A tool that is held is its parts
+in the hand frame; on the table it is these turned by the wrist's angle and moved to the wrist.
 """
 
 from dataclasses import dataclass, field, replace
@@ -112,7 +112,11 @@ class Tool:
 
 
 def tool_from_canonical(value: Any) -> Tool:
-    """Return the tool that `Tool.canonical` wrote; ValueError, KeyError or TypeError if it did not."""
+    """Return the tool that `Tool.canonical` wrote.
+
+    Raises:
+        ValueError, KeyError, TypeError: it wrote none such.
+    """
     red, green, blue = map(float, value["color"])
     parts = tuple(
         ToolPart(str(name), ConvexPolygon(tuple(Point(float(x), float(y)) for x, y in vertices)))

@@ -3,10 +3,9 @@
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from affcli.config import settings_from_json
-from affcli.core.trial import BabblingRecord, LearningSpec, Truth
-from affcli.lab.versions import versions
-from affcli.store import LearningRunInfo, Store
+from affcli.core.records import LearningRunInfo
+from affcli.core.specs import LearningSpec, LearningStep
+from affcli.store import Store
 
 CHUNK = 500
 """Behaviors saved in one transaction: what a kill can cost, and half a robot hour."""
@@ -45,29 +44,32 @@ def learn(
     Raises:
         DatabaseError: a chunk could not be saved; the chunks before it are kept.
     """
-    made_with = versions(settings_from_json(spec.settings).sensor.kind)
-    info = store.begin_learning(spec, made_with, now())
-    if info.status == "done":
-        return Learned(info, new=False)
+    found = store.learning.find(spec)
+    if found is not None and found.status == "done":
+        return Learned(found, new=False)
     # Only now: who finds the run done needs no physics engine.
     from affcli.lab.learning_run import gone_on_with
+    from affcli.lab.run_parts import world_of
+    from affcli.lab.versions import versions
 
+    made_with = versions(world_of(spec, again=True), spec.sensor)
+    info = store.learning.begin(spec, made_with, now())
     new = False
     while info.status != "done":
         run = gone_on_with(info)
         for chunk in _chunks(run.steps()):
             new = True
-            saved = store.append_learning(
+            saved = store.learning.append(
                 info.id,
                 info.behaviors,
                 chunk,
                 None if run.done else run.checkpoint(),
-                robot_seconds=run.bench.robot.clock,
+                run.setting.robot.clock,
                 done=run.done,
                 now=now(),
                 calibration=run.calibration,
             )
-            info = store.begin_learning(spec, made_with, now())
+            info = store.learning.begin(spec, made_with, now())
             if progress is not None:
                 progress(info)
             if not saved:
@@ -75,11 +77,9 @@ def learn(
     return Learned(info, new)
 
 
-def _chunks(
-    steps: Iterator[tuple[BabblingRecord, Truth]],
-) -> Iterator[Sequence[tuple[BabblingRecord, Truth]]]:
+def _chunks(steps: Iterator[LearningStep]) -> Iterator[Sequence[LearningStep]]:
     """Gather steps into chunks of `CHUNK`; the last may be shorter."""
-    chunk: list[tuple[BabblingRecord, Truth]] = []
+    chunk: list[LearningStep] = []
     for step in steps:
         chunk.append(step)
         if len(chunk) == CHUNK:

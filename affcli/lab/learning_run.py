@@ -3,20 +3,13 @@
 from collections.abc import Iterator
 from typing import Any
 
-from affcli.config import settings_from_json
-from affcli.core.geometry import Point, Pose
+from affcli import registry
 from affcli.core.observation import Observation
-from affcli.core.trial import BabblingRecord, LearningSpec, Truth
-from affcli.lab.bench import LEARNING, STREAMS, Bench, stable_number, tool_named
-from affcli.lab.plausible import bounded, not_written
-from affcli.lab.sensing import calibration_of
+from affcli.core.records import LearningRunInfo
+from affcli.core.specs import LearningSpec, LearningStep
+from affcli.errors import DatabaseError
+from affcli.lab.run_parts import require_world_version, settings_of, world_of
 from affcli.procedures.babbling import BabblingState, babble
-from affcli.simulation.world import World
-from affcli.store import LearningRunInfo
-
-CHECKPOINT = {"step", "grasped", "seen", "clock", "wrist", "attractor", "streams"}
-STREAM = {"bit_generator": 0, "state": 0, "has_uint32": 2, "uinteger": 2**32}
-"""What the state of a random stream consists of, with the limit of what is a number."""
 
 
 class LearningRun:
@@ -27,133 +20,97 @@ class LearningRun:
         checkpoint: what `checkpoint` gave when the run was stopped; None to begin.
 
     Attributes:
+        setting: the world as it was laid out.
         calibration: of the camera that the robot sees through, as JSON; None without one.
+
+    Raises:
+        UsageError, BadInputError: a part that this affcli lacks, or has in another version.
+        ValueError, KeyError, TypeError: the checkpoint is none that `checkpoint` gives.
     """
 
     def __init__(self, spec: LearningSpec, checkpoint: dict[str, Any] | None = None) -> None:
-        settings = settings_from_json(spec.settings)
-        world = World(settings.workspace, settings.physics)
-        key = (LEARNING, spec.seed, spec.robot, stable_number(spec.tool))
+        require_world_version(spec.world)
         self.spec = spec
-        self.calibration = calibration_of(settings, spec.seed, spec.robot)
-        self.bench = Bench.of(settings, world, *key)
+        self.setting = world_of(spec, again=True).learning(spec, laid_out=checkpoint is None)
+        self.calibration = self.setting.calibration
+        self._explorer = registry.explorer(spec.explorer, self.setting, settings_of(spec))
         self._state = BabblingState()
-        tool = tool_named(settings, spec.tool)
-        if checkpoint is None:
-            self.bench.experimenter.lay_out_learning(tool)
-        else:
-            world.tool = tool
+        if checkpoint is not None:
             self._restore(checkpoint)
 
-    def steps(self) -> Iterator[tuple[BabblingRecord, Truth]]:
+    def steps(self) -> Iterator[LearningStep]:
         """Yield what each behavior gave, until the time or the number of behaviors is up.
 
         The behavior during which the time runs out is the last.
         """
-        bench = self.bench
+        setting = self.setting
         records = babble(
-            bench.robot,
-            bench.sensor,
-            bench.experimenter,
-            bench.behaviors.binding,
-            bench.behaviors.exploratory,
-            bench.settings.babbling,
-            bench.streams["choices"],
+            setting.robot,
+            setting.sensor,
+            setting.experimenter,
+            setting.binding,
+            self._explorer,
             self._state,
         )
         while not self.done:
-            yield next(records), bench.truth()
+            yield next(records), setting.truth()
+
+    @property
+    def behaviors(self) -> int:
+        """How many behaviors were executed."""
+        return self._state.step
 
     @property
     def done(self) -> bool:
         """Whether the time or the number of behaviors is up."""
         if self.spec.behaviors is not None:
             return self._state.step >= self.spec.behaviors
-        return self.bench.robot.clock >= 3600.0 * (self.spec.hours or 0.0)
+        return self.setting.robot.clock >= 3600.0 * (self.spec.hours or 0.0)
 
-    def checkpoint(self) -> dict[str, Any]:
-        """Return, as JSON types, all that a later `LearningRun` needs to go on from here."""
-        world = self.bench.world
+    def checkpoint(self) -> dict[str, Any] | None:
+        """Return, as JSON types, all that a later `LearningRun` needs to go on from here; None in a
+        world that cannot be gone on with.
+        """
+        snapshot = self.setting.snapshot()
+        if snapshot is None:
+            return None
         return {
             "step": self._state.step,
             "grasped": self._state.grasped,
             "seen": self._state.seen,
-            "clock": self.bench.robot.clock,
-            "wrist": world.wrist,
-            "attractor": world.attractor,
-            "streams": {n: s.bit_generator.state for n, s in self.bench.streams.items()},
+            "explorer": self._explorer.state(),
+            **snapshot,
         }
 
     def _restore(self, checkpoint: dict[str, Any]) -> None:
         """Put everything where the checkpoint says."""
         seen = checkpoint["seen"]
-        self._state.step = checkpoint["step"]
-        self._state.grasped = checkpoint["grasped"]
-        self._state.seen = None if seen is None else Observation(*seen)
-        self.bench.robot.clock = checkpoint["clock"]
-        self.bench.world.wrist = Point(*checkpoint["wrist"])
-        self.bench.world.attractor = Pose(*checkpoint["attractor"])
-        for name, stream in self.bench.streams.items():
-            stream.bit_generator.state = checkpoint["streams"][name]
+        self._state.step = int(checkpoint["step"])
+        self._state.grasped = bool(checkpoint["grasped"])
+        self._state.seen = None if seen is None else Observation(*map(float, seen))
+        # Runs that were begun before explorers had names explored at random, and remember nothing.
+        self._explorer.restore(checkpoint.get("explorer", {}))
+        self.setting.restore(checkpoint)
 
 
 def gone_on_with(info: LearningRunInfo) -> LearningRun:
-    """Return a run that is not done, as far as it came."""
-    _check_checkpoint(info)
-    run = LearningRun(info.spec, info.checkpoint)
-    if run.done:  # and not marked so: there would be no end to it
-        raise not_written(f"learning run {info.id}")
-    return run
-
-
-def _check_checkpoint(run: LearningRunInfo) -> None:
-    """Refuse to go on with a learning run from where it cannot have been.
-
-    Args:
-        run: begun, and not done.
+    """Return a run that is not done, as far as it came.
 
     Raises:
         DatabaseError: what it needs to go on is missing, or is none that `LearningRun` gives.
+        UsageError, BadInputError: a part that it began with is missing here.
     """
-    place, kept = f"learning run {run.id}", run.checkpoint
-    if kept is None:
-        if run.behaviors:
-            raise not_written(place)
-        return
-    if kept.keys() != CHECKPOINT:
-        raise not_written(place)
-    stands = (kept["step"], kept["clock"]) == (run.behaviors, run.robot_seconds)
-    seen = kept["seen"] is None or _are_numbers(kept["seen"], len(Observation._fields))
-    placed = _are_numbers(kept["wrist"], 2) and _are_numbers(kept["attractor"], 3)
-    streams = kept["streams"]
-    drawn = (
-        isinstance(streams, dict)
-        and streams.keys() == set(STREAMS)
-        and all(map(_is_stream, streams.values()))
+    damaged = DatabaseError(
+        f"learning run {info.id} cannot be gone on with: its checkpoint is not as affcli writes "
+        "it; restore a copy of the database"
     )
-    if not (stands and isinstance(kept["grasped"], bool) and seen and placed and drawn):
-        raise not_written(place)
-
-
-def _are_numbers(value: object, count: int) -> bool:
-    """Tell whether a value of JSON is a list of so many numbers within bounds."""
-    return (
-        isinstance(value, list)
-        and len(value) == count
-        and all(isinstance(number, int | float) for number in value)
-        and bounded(value)
-    )
-
-
-def _is_stream(value: Any) -> bool:
-    """Tell whether a value of JSON is the state of a random stream, a PCG64."""
-    if not isinstance(value, dict) or value.keys() != STREAM.keys():
-        return False
-    words = value["state"]
-    if not isinstance(words, dict) or words.keys() != {"state", "inc"}:
-        return False
-    numbers = [(words["state"], 2**128), (words["inc"], 2**128)]
-    numbers += [(value[name], limit) for name, limit in STREAM.items() if limit]
-    return value["bit_generator"] == "PCG64" and all(
-        isinstance(number, int) and 0 <= number < limit for number, limit in numbers
-    )
+    if info.checkpoint is None and info.behaviors:
+        raise damaged
+    try:
+        run = LearningRun(info.spec, info.checkpoint)
+    except (KeyError, TypeError, ValueError) as error:
+        raise damaged from error
+    stands = (run.behaviors, run.setting.robot.clock) == (info.behaviors, info.robot_seconds)
+    if run.done or (info.checkpoint is not None and not stands):  # there would be no end to it
+        raise damaged
+    return run

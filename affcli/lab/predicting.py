@@ -1,49 +1,29 @@
 """The stored table as a predictive model, on pushes it has never seen (§6.1)."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import islice
 
-from affcli.config import Settings, settings_from_json, with_sensor
-from affcli.core.affordance import Affordance
+from affcli import registry
+from affcli.core.affordance import Affordance, is_probable
+from affcli.core.identity import Component
 from affcli.core.observation import Movement, SensorKind, movement
+from affcli.core.ports import Experimenter
+from affcli.core.records import LearningRunInfo
+from affcli.core.specs import LearningSpec, VerificationSpec
+from affcli.core.tool import Tool
 from affcli.core.trial import BabblingRecord
 from affcli.errors import UsageError
-from affcli.lab.bench import PREDICTION, Bench, stable_number, tool_named
-from affcli.lab.plausible import learned_table
+from affcli.lab.run_parts import settings_of, world_of
 from affcli.planning.prediction import TablePredictor
 from affcli.procedures.babbling import BabblingState, babble
 from affcli.report.prediction import LEARNED_FROM, Foretold, Push
-from affcli.simulation.experimenter import SimulatedExperimenter
-from affcli.simulation.world import World
-from affcli.store import LearningRunInfo, Store
+from affcli.store import Store
 
 
-@dataclass(frozen=True, slots=True)
-class PredictionSpec:
-    """Which pushes a table is tested on.
-
-    Args:
-        tool: the tool the robot believes to hold: the one whose table is asked.
-        shape: the shape it truly holds.
-        seed: of places, choices and noise.
-        robot: which of many robots that share the seed.
-        sensor: through what it sees.
-        pushes: how many.
-    """
-
-    tool: str
-    shape: str
-    seed: int
-    robot: int
-    sensor: SensorKind
-    pushes: int
-
-
-class Restless:
+class AlwaysElsewhere:
     """An experimenter who puts the attractor somewhere else before every behavior."""
 
-    def __init__(self, experimenter: SimulatedExperimenter) -> None:
+    def __init__(self, experimenter: Experimenter) -> None:
         self._experimenter = experimenter
 
     def attractor_out_of_reach(self) -> bool:
@@ -59,35 +39,27 @@ class Restless:
         self._experimenter.put_attractor_for(row)
 
 
-def fresh_pushes(spec: PredictionSpec, settings: Settings) -> Iterator[BabblingRecord]:
-    """Push as in babbling, each time with the attractor put at a new random place.
+def fresh_pushes(spec: VerificationSpec, learned: LearningSpec) -> Iterator[BabblingRecord]:
+    """Push as in random babbling, each time with the attractor put at a new random place.
 
     Args:
-        spec: which pushes.
-        settings: those of the learning run, but for the sensor, which `spec` names.
+        spec: which pushes; as many as its tries.
+        learned: how the table was learned.
     """
-    settings = with_sensor(settings, spec.sensor)
-    world = World(settings.workspace, settings.physics)
-    names = (stable_number(spec.tool), stable_number(spec.shape))
-    bench = Bench.of(settings, world, PREDICTION, spec.seed, spec.robot, *names)
-    believed = tool_named(settings, spec.tool)
-    bench.experimenter.lay_out_verification(
-        tool_named(settings, spec.shape).painted(believed.color)
-    )
+    setting = world_of(learned).prediction(spec, learned)
+    explorer = Component(registry.DEFAULTS["explorer"])
     records = babble(
-        bench.robot,
-        bench.sensor,
-        Restless(bench.experimenter),
-        bench.behaviors.binding,
-        bench.behaviors.exploratory,
-        settings.babbling,
-        bench.streams["choices"],
+        setting.robot,
+        setting.sensor,
+        AlwaysElsewhere(setting.experimenter),
+        setting.binding,
+        registry.explorer(explorer, setting, settings_of(learned, spec.sensor)),
         BabblingState(),
     )
-    return islice(records, spec.pushes)
+    return islice(records, spec.tries)
 
 
-class Oracle:
+class StagedTable:
     """A table asked what a push will do: all of it, and what it was after its first rows.
 
     Args:
@@ -99,7 +71,7 @@ class Oracle:
         self._stages = {number: TablePredictor(rows[:number]) for number in (*few, len(rows))}
 
     def push(self, record: BabblingRecord) -> Push:
-        """Return what was foretold of a push, and what came of it."""
+        """Return what was predicted of a push, and what came of it."""
         call, offset = record.execution.call, record.start.wrist_to_object
         start, end = record.execution.wrist_start, record.execution.wrist_end
         return Push(
@@ -114,13 +86,13 @@ class Oracle:
 
 
 def prediction_spec(
-    run: LearningRunInfo, shape: str, seed: int, sensor: SensorKind | None, pushes: int
-) -> PredictionSpec:
+    run: LearningRunInfo, held: Tool, seed: int, sensor: SensorKind | None, pushes: int
+) -> VerificationSpec:
     """Return which pushes are meant.
 
     Args:
         run: the learning run whose table is asked.
-        shape: the shape that the robot truly holds.
+        held: the tool that the robot truly holds.
         seed: of places, choices and noise.
         sensor: through what the robot sees; None for what it learned with.
         pushes: how many.
@@ -133,11 +105,13 @@ def prediction_spec(
             f"run {run.id} of the {run.spec.tool} made no rows: there is nothing to predict by; "
             "learn for longer"
         )
-    kind = sensor or settings_from_json(run.spec.settings).sensor.kind
-    return PredictionSpec(run.spec.tool, shape, seed, run.spec.robot, kind, pushes)
+    kind = sensor or run.spec.sensor
+    return VerificationSpec(
+        run.spec.tool, held, seed, run.spec.robot, kind, pushes, until_verdict=False
+    )
 
 
-def predict(store: Store, run: LearningRunInfo, spec: PredictionSpec) -> Iterator[Push]:
+def predict(store: Store, run: LearningRunInfo, spec: VerificationSpec) -> Iterator[Push]:
     """Ask a stored table what pushes will do, and do them.
 
     Rows that were excluded (probability 1/2 or less) tell nothing.
@@ -148,10 +122,10 @@ def predict(store: Store, run: LearningRunInfo, spec: PredictionSpec) -> Iterato
         spec: which pushes.
 
     Yields:
-        Each push with what was foretold of it.
+        Each push with what was predicted of it.
     """
-    settings = settings_from_json(run.spec.settings)
-    table, _ = learned_table(store, run, settings)
-    oracle = Oracle([row for row in table if row.replication_probability > 0.5])
-    for record in fresh_pushes(spec, settings):
-        yield oracle.push(record)
+    table, _ = store.learning.table(run.id)
+    live = [row for row in table if is_probable(row.times_successful, row.times_used)]
+    staged = StagedTable(live)
+    for record in fresh_pushes(spec, run.spec):
+        yield staged.push(record)

@@ -7,104 +7,135 @@ from itertools import islice
 import numpy as np
 from numpy.typing import NDArray
 
-from affcli.config import settings_from_json
-from affcli.core.affordance_table import AffordanceTable
+from affcli import registry
+from affcli.core.choice import Candidate, Choice, Situation
 from affcli.core.observation import Observation
-from affcli.core.ports import Robot
+from affcli.core.ports import Goal, Planner, Setting
+from affcli.core.records import LearningRunInfo, TrialInfo
 from affcli.core.replay import Considered, Replay, ReplayedBehavior, ReplayedStep
 from affcli.core.scene import Scene
-from affcli.core.task import GoalRegion
-from affcli.core.tool import TOOL_PARTS
-from affcli.core.trial import Counters, TrialStep
+from affcli.core.specs import Counters
+from affcli.core.trial import TrialStep
+from affcli.errors import DatabaseError, UsageError
 from affcli.lab.filming import FRAME_RATE, Reel
 from affcli.lab.learning_run import LearningRun
-from affcli.lab.plausible import check_rows, check_starts, check_trial, not_written
-from affcli.lab.trials import Ended, LostAffordances, run_trial
-from affcli.planning.nested_query import Choice, candidates, choose_row
-from affcli.simulation.world import World
-from affcli.store import LearningRunInfo, Store
+from affcli.lab.run_parts import require_world_version, settings_of, world_of
+from affcli.lab.trials import WithEnd, run_trial
+from affcli.store import Store
 
 CLOSE = 5
-"""Rows remembered of those that search 4 chose from, the chosen one among them."""
+"""Rows remembered of those that came closest to being chosen, the chosen one among them."""
 
 
 class _Onlooker:
-    """Notes what each query was about, and cuts the film there."""
+    """A planner that chooses as another does, notes what each choice was about, and cuts the film
+    there.
+    """
 
-    def __init__(self, ids: dict[int, int]) -> None:
+    def __init__(self, planner: Planner, ids: dict[int, int]) -> None:
         self.reel = Reel()
+        self._planner = planner
         self._ids = ids
         self.seen: Observation | None = None
-        self.goal: GoalRegion | None = None
+        self.goal: Goal | None = None
         self.considered: tuple[Considered, ...] = ()
 
-    def choose(
-        self, table: AffordanceTable, seen: Observation, goal: GoalRegion, robot: Robot
-    ) -> Choice:
-        """Choose as the robot does, and remember what came close."""
+    @property
+    def angle_degrees(self) -> float:
+        return self._planner.angle_degrees
+
+    @property
+    def threshold(self) -> float:
+        return self._planner.threshold
+
+    def candidates(self, situation: Situation) -> tuple[Candidate, ...]:
+        """Return what the other says."""
+        return self._planner.candidates(situation)
+
+    def choose(self, situation: Situation) -> Choice:
+        """Choose as the other does, and remember what came close."""
         self.reel.cut()
-        self.seen, self.goal = seen, goal
-        close = candidates(table, seen, goal, robot)[:CLOSE]
-        rows = [table.row(one.position) for one in close]
+        self.seen, self.goal = situation.seen, situation.goal
+        close = self.candidates(situation)[:CLOSE]
+        rows = [situation.table.row(one.position) for one in close]
         self.considered = tuple(
             Considered(self._ids[row.step], row, one.expected_distance, one.repositioning)
             for row, one in zip(rows, close, strict=True)
         )
-        return choose_row(table, seen, goal, robot)
+        return self._planner.choose(situation)
 
 
 def replay_trial(store: Store, trial_id: int) -> Replay:
-    """Do a stored trial again, from its settings, its seed and the table it began with.
+    """Do a stored trial again, from its spec and the table it began with.
 
     Args:
         store: open.
         trial_id: its number.
 
     Raises:
-        UsageError: there is none of that number.
+        UsageError: there is none of that number, or it names a part that this affcli lacks.
+        BadInputError: it was made in another version of its world or with another planner.
         DatabaseError: it, or the table it began with, holds what affcli does not write.
     """
-    trial = store.trial(trial_id)
-    settings = settings_from_json(trial.settings)
-    spec = trial.spec
-    check_trial(trial_id, spec)
+    trial = store.trials.trial(trial_id)
+    spec, learned = trial.spec, trial.learned
+    require_world_version(spec.world)
+    require_shape(trial)
     if spec.counters is Counters.STORED:
-        table, ids = store.table_before(trial_id)
+        table, ids = store.trials.table_before(trial_id)
     else:
-        table, ids = store.affordance_table(trial.run_id, as_learned=True)
-    check_rows(trial.run_id, settings, table)
+        table, ids = store.learning.table(trial.run_id, as_learned=True)
+    world = world_of(learned)
     lost = None
     if spec.shape != spec.tool:
-        starts = store.row_starts(trial.run_id)
-        check_starts(trial.run_id, starts, table)
-        lost = LostAffordances(settings, spec.shape, starts)
-    recorded = len(store.trial_steps(trial_id))
-    world = World(settings.workspace, settings.physics)
-    onlooker = _Onlooker(ids)
-    running = Ended(run_trial(spec, settings, table, world, onlooker.reel, onlooker.choose))
+        lost = world.lost_rows(learned, spec.held, store.learning.row_starts(trial.run_id))
+    recorded = len(store.trials.steps(trial_id))
+    setting = world.trial(spec, learned)
+    onlooker = _Onlooker(registry.planner(spec.planner), ids)
+    setting.film(onlooker.reel)
+    running = WithEnd(run_trial(spec, learned, table, setting, onlooker))
     steps: list[ReplayedStep] = []
     again = iter(running)
     # An interrupted trial has no end: no more is done than was.
     wanted = again if trial.outcome is not None else islice(again, recorded)
-    opening: Scene | None = None
+    opening = _scene(setting)
+    filmed = False
     for record, truth in wanted:
         judged = lost.lost(record.row) if lost is not None else None
         # Arms that are very quick leave no time for a frame.
-        scenes = onlooker.reel.cut() or (world.scene,)
-        opening = opening or scenes[0]
+        scenes = onlooker.reel.cut() or (_scene(setting),)
+        opening, filmed = (opening if filmed else scenes[0]), True
         steps.append(_replayed(TrialStep(record, truth, judged), onlooker, scenes))
     end = running.end if trial.outcome is not None else None
-    differences = store.trial_differences(trial_id, [one.step for one in steps], end, ids)
+    differences = store.trials.differences(trial_id, [one.step for one in steps], end, ids)
     return Replay(
-        *(trial_id, trial.run_id, spec, settings.workspace),
-        *(opening or world.scene, tuple(steps), end, differences),
+        *(trial_id, trial.run_id, spec, settings_of(learned).workspace),
+        *(opening, tuple(steps), end, differences),
     )
+
+
+def require_shape(trial: TrialInfo) -> None:
+    """Make sure that it is known what the tools of a trial look like; DatabaseError otherwise."""
+    for tool in (trial.learned.held, trial.spec.held):
+        if not tool.parts:
+            raise DatabaseError(
+                f"trial {trial.id}: this affcli does not know what a {tool.name} looks like; "
+                "install the affcli that made it"
+            )
+
+
+def _scene(setting: Setting) -> Scene:
+    """Return what is truly on the table; UsageError in a world that cannot tell."""
+    scene = setting.scene()
+    if scene is None:
+        raise UsageError("a world that does not tell what is truly on its table has no replays")
+    return scene
 
 
 def _replayed(step: TrialStep, onlooker: _Onlooker, scenes: tuple[Scene, ...]) -> ReplayedStep:
     """Return a step with what was noted of it."""
     if onlooker.seen is None or onlooker.goal is None:
-        raise LookupError("a step without a query")
+        raise LookupError("a step without a choice")
     execution = step.record.execution
     pushing = 0 if execution is None else round(execution.duration * FRAME_RATE)
     return ReplayedStep(
@@ -120,7 +151,7 @@ def _replayed(step: TrialStep, onlooker: _Onlooker, scenes: tuple[Scene, ...]) -
 def replay_run(
     store: Store, run: LearningRunInfo, first: int = 1, last: int | None = None
 ) -> Iterator[ReplayedBehavior]:
-    """Do a stored learning run again, from its settings and seed.
+    """Do a stored learning run again, from its spec.
 
     Args:
         store: open.
@@ -133,23 +164,20 @@ def replay_run(
         that differ from their record.
 
     Raises:
-        DatabaseError: it holds a value that affcli does not know.
+        UsageError, BadInputError, DatabaseError: as `replay_trial`.
     """
-    spec = run.spec
-    if spec.tool not in TOOL_PARTS or min(spec.seed, spec.robot, run.behaviors) < 0:
-        raise not_written(f"learning run {run.id}")
     learning = LearningRun(run.spec)
-    reel = Reel()
+    setting, reel = learning.setting, Reel()
     if first == 1:
-        learning.bench.robot.film = reel
+        setting.film(reel)
     count = run.behaviors if last is None else min(last, run.behaviors)
     for record, truth in islice(learning.steps(), count):
         # The film of what goes before is not wanted, and takes longer than the doing.
         if record.step == first - 1:
-            reel.skip_to(learning.bench.robot.clock)
-            learning.bench.robot.film = reel
-        differences = store.behavior_differences(run.id, run.spec.tool, [(record, truth)])
-        scenes = reel.cut() or (learning.bench.world.scene,)
+            reel.skip_to(setting.robot.clock)
+            setting.film(reel)
+        differences = store.learning.differences(run.id, run.spec.tool, [(record, truth)])
+        scenes = reel.cut() or (_scene(setting),)
         if record.step >= first or differences:
             yield ReplayedBehavior(record, truth, scenes, differences)
 

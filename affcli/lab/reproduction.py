@@ -8,66 +8,104 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import partial
 from multiprocessing import active_children, get_context, parent_process
 from threading import Thread
 
-from affcli.config import Settings
+from affcli import registry
 from affcli.core.affordance_table import AffordanceTable
-from affcli.core.geometry import Point, Pose
-from affcli.core.tool import TOOL_PARTS
-from affcli.core.trial import (
+from affcli.core.identity import Component
+from affcli.core.specs import (
     BROKEN_SHAPE,
     BROKEN_TOOL,
-    LearningSpec,
     Protocol,
     RobotRecord,
+    RowStarts,
+    SessionSpec,
     TrialRecord,
 )
 from affcli.errors import AffcliError
 from affcli.lab.learning_run import LearningRun
-from affcli.lab.sensing import calibration_of
-from affcli.lab.trials import LostAffordances, trial_specs, whole_trial
+from affcli.lab.run_parts import RunParts, settings_json, world_of
+from affcli.lab.trials import trial_specs, whole_trial
 from affcli.lab.versions import versions
-from affcli.simulation.world import World
+from affcli.simulation.tools.paper import TOOL_PARTS
 from affcli.store import PackedRobot, Store, pack_robot
 
 HOURS = 1.0
 """§6: one hour of run time for every tool."""
 
 
-def one_robot(settings: Settings, seed: int, robot: int) -> RobotRecord:
-    """Return the life of one robot: a pure function of settings, seed and its number."""
-    text = settings.to_json()
-    sensor = settings.sensor.kind
-    world = World(settings.workspace, settings.physics)
+@dataclass(frozen=True, slots=True)
+class Reproduced:
+    """What every robot of a reproduction is a function of, beside its number.
+
+    Args:
+        parts: what its learning runs carry.
+        planner: how it chooses rows.
+        seed: shared by all robots.
+        hours: robot hours a tool.
+    """
+
+    parts: RunParts
+    planner: Component
+    seed: int
+    hours: float = HOURS
+
+    def session(self, robots: int) -> SessionSpec:
+        """Return what a reproduction of so many robots is a function of."""
+        parts = self.parts
+        return SessionSpec(
+            kind="reproduce",
+            seed=self.seed,
+            robots=robots,
+            world=parts.world,
+            repertoire=parts.repertoire,
+            binding=parts.binding,
+            explorer=parts.explorer,
+            planner=self.planner,
+            sensor=parts.sensor,
+            settings=settings_json(parts.settings),
+            task_set=registry.DEFAULTS["task"],
+        )
+
+
+def one_robot(what: Reproduced, robot: int) -> RobotRecord:
+    """Return the life of one robot: a pure function of what is reproduced and its number."""
     learned = []
     trials: list[TrialRecord] = []
+    calibration: str | None = None
+    world = None
     for name in TOOL_PARTS:
-        spec = LearningSpec(name, seed, robot, HOURS, None, text)
+        spec = what.parts.spec(name, what.seed, robot, what.hours)
         run = LearningRun(spec)
         steps = tuple(run.steps())
-        learned.append((spec, steps, run.bench.robot.clock))
+        calibration = run.calibration
+        learned.append((spec, steps, run.setting.robot.clock))
         table = AffordanceTable(r.affordance for r, _ in steps if r.affordance is not None)
-        whole = trial_specs(Protocol.EXTENSION_OF_REACH, name, name, seed, robot, sensor)
-        trials += [whole_trial(trial, settings, table, world) for trial in whole]
+        world = world or world_of(spec)
+        tasks = world.tasks(registry.DEFAULTS["task"])
+        seen = (tasks, what.seed, spec.sensor, what.planner, world)
+        whole = trial_specs(Protocol.EXTENSION_OF_REACH, spec, spec.held, *seen)
+        trials += [whole_trial(trial, spec, table, world) for trial in whole]
         if name == BROKEN_TOOL:
-            starts: dict[int, tuple[Point, Pose]] = {
-                r.step: (r.execution.wrist_start, truth.start) for r, truth in steps if r.affordance
+            starts: RowStarts = {
+                r.step: (r.execution.wrist_start, truth.start)
+                for r, truth in steps
+                if r.affordance and truth is not None
             }
-            lost = LostAffordances(settings, BROKEN_SHAPE, starts)
-            protocol = Protocol.TOOL_ADAPTATION
-            broken = trial_specs(protocol, name, BROKEN_SHAPE, seed, robot, sensor)
-            trials += [whole_trial(trial, settings, table, world, lost) for trial in broken]
-    calibration = calibration_of(settings, seed, robot)
+            left = what.parts.tool(BROKEN_SHAPE)
+            lost = world.lost_rows(spec, left, starts)
+            broken = trial_specs(Protocol.TOOL_ADAPTATION, spec, left, *seen)
+            trials += [whole_trial(trial, spec, table, world, lost) for trial in broken]
     return RobotRecord(robot, tuple(learned), tuple(trials), calibration)
 
 
 def reproduce(
     store: Store,
-    settings: Settings,
+    what: Reproduced,
     robots: int,
-    seed: int,
     workers: int,
     now: Callable[[], str],
 ) -> Iterator[int]:
@@ -79,35 +117,34 @@ def reproduce(
 
     Args:
         store: open for writing.
-        settings: of every robot.
+        what: robot i is a function of (what, i).
         robots: how many.
-        seed: shared; robot i is a function of (settings, seed, i).
         workers: processes; 1 runs everything in this one.
         now: gives the time as ISO text.
 
     Yields:
         The session's id first, then how many robots are saved, each time one more is.
     """
-    text = settings.to_json()
-    made_with = versions(settings.sensor.kind)
-    session = store.begin_session("reproduce", seed, robots, text, made_with, now())
+    world = registry.world(what.parts.world, what.parts.settings)
+    made_with = versions(world, what.parts.sensor)
+    session = store.sessions.begin(what.session(robots), made_with, now())
     yield session
-    there = store.saved_robots(session)
+    there = store.sessions.saved_robots(session)
     missing = [i for i in range(robots) if i not in there]
     saved = robots - len(missing)
-    for life in _lives(settings, seed, missing, workers):
-        store.save_robot(session, life, made_with, now())
+    for life in _lives(what, missing, workers):
+        store.sessions.save_robot(session, life, made_with, now())
         saved += 1
         yield saved
-    store.finish_session(session, now())
+    store.sessions.finish(session, now())
 
 
-def _lives(settings: Settings, seed: int, robots: list[int], workers: int) -> Iterator[PackedRobot]:
+def _lives(what: Reproduced, robots: list[int], workers: int) -> Iterator[PackedRobot]:
     """Yield the robots' lives in order, computed by `workers` processes.
 
     No more than a few finished lives wait at any time, so memory stays flat however many robots.
     """
-    life = partial(_packed_life, settings, seed)
+    life = partial(_packed_life, what)
     if workers == 1 or len(robots) <= 1:
         yield from map(life, robots)
         return
@@ -157,9 +194,9 @@ def _interrupt_held_back() -> Iterator[None]:
             signal.raise_signal(signal.SIGINT)
 
 
-def _packed_life(settings: Settings, seed: int, robot: int) -> PackedRobot:
+def _packed_life(what: Reproduced, robot: int) -> PackedRobot:
     """Return a robot's life as rows: the process that lived it does the packing."""
-    return pack_robot(one_robot(settings, seed, robot))
+    return pack_robot(one_robot(what, robot))
 
 
 def _begin_worker() -> None:

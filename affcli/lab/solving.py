@@ -1,17 +1,18 @@
 """Solving tasks with what the store holds: every step updates the stored table (§6.2, §7.1)."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from affcli.config import settings_from_json, with_sensor
+from affcli.core.identity import Component
 from affcli.core.observation import SensorKind
-from affcli.core.trial import Counters, Outcome, Protocol, StepRecord, TrialEnd, TrialSpec
-from affcli.lab.plausible import learned_table
-from affcli.lab.sensing import calibration_of
-from affcli.lab.trials import Ended, run_trial
+from affcli.core.records import LearningRunInfo
+from affcli.core.specs import Counters, Protocol, SessionSpec, TrialSpec
+from affcli.core.task import Task
+from affcli.core.trial import Outcome, StepRecord, TrialEnd
+from affcli.lab.run_parts import world_of
+from affcli.lab.trials import WithEnd, run_trial, trial_specs
 from affcli.lab.versions import versions
-from affcli.simulation.world import World
-from affcli.store import LearningRunInfo, Store
+from affcli.store import Store
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,13 +53,13 @@ class SolvedTrial:
 def solve(
     store: Store,
     runs: Sequence[LearningRunInfo],
-    goal: int,
-    starts: Sequence[int],
+    tasks: Sequence[Task],
     seed: int,
     now: Callable[[], str],
+    planner: Component,
     sensor: SensorKind | None = None,
 ) -> Iterator[SolvedStep | SolvedTrial]:
-    """Do one trial for each learned tool and start, one after the other.
+    """Do one trial for each learned tool and task, one after the other.
 
     Each trial starts from the table as it is in the store, counters included, and each step is
     saved together with the counters it changed, in one transaction (§3.2: the counters are updated
@@ -67,41 +68,69 @@ def solve(
     Args:
         store: open for writing.
         runs: the learning runs whose tables are used, one for each tool.
-        goal: 1 to 4.
-        starts: among 1 to 4.
+        tasks: by the goals and starts of the first run's settings; another run has its own places
+            of the same names.
         seed: of the sensor's noise.
         now: gives the time as ISO text.
-        sensor: through what the robot sees; None for what it learned with.
+        planner: how the robots choose rows.
+        sensor: through what they see; None for what they learned with.
 
     Yields:
         Each step once it is saved, and each trial's end.
     """
-    seeing = [with_sensor(settings_from_json(run.spec.settings), sensor) for run in runs]
-    # A camera that is not there, or cannot be calibrated, is found before anything is recorded.
-    eyes = [calibration_of(s, seed, r.spec.robot) for s, r in zip(seeing, runs, strict=True)]
-    made_with = versions(seeing[0].sensor.kind)
-    session = store.begin_session("solve", seed, 1, seeing[0].to_json(), made_with, now())
-    for run, settings, calibration in zip(runs, seeing, eyes, strict=True):
-        world = World(settings.workspace, settings.physics)
-        for start in starts:
-            spec = TrialSpec(
-                protocol=Protocol.EXTENSION_OF_REACH,
-                tool=run.spec.tool,
-                shape=run.spec.tool,
-                goal=goal,
-                start=start,
-                seed=seed,
-                robot=run.spec.robot,
-                counters=Counters.STORED,
-                sensor=settings.sensor.kind,
-            )
-            table, ids = learned_table(store, run, settings)
-            trial = store.begin_trial(session, run.id, spec, calibration)
-            steps = Ended(run_trial(spec, settings, table, world))
+    names = {(task.goal.name, task.start_name) for task in tasks}
+    planned = []
+    for run in runs:
+        world, kind = world_of(run.spec), sensor or run.spec.sensor
+        own = [
+            task
+            for task in world.tasks(tasks[0].task_set)
+            if (task.goal.name, task.start_name) in names
+        ]
+        specs = trial_specs(
+            *(Protocol.EXTENSION_OF_REACH, run.spec, run.spec.held, own),
+            *(seed, kind, planner, world),
+        )
+        # A camera that is not there, or cannot be calibrated, is found before anything is recorded.
+        calibration = world.trial(specs[0], run.spec).calibration
+        planned.append((run, world, specs, calibration))
+    _, world, specs, _ = planned[0]
+    spec = session_spec("solve", runs[0], specs[0])
+    session = store.sessions.begin(spec, versions(world, spec.sensor), now())
+    for run, world, specs, calibration in planned:
+        for as_learned in specs:
+            trial = replace(as_learned, counters=Counters.STORED)
+            table, ids = store.learning.table(run.id)
+            number = store.trials.begin(session, run.id, trial, calibration)
+            steps = WithEnd(run_trial(trial, run.spec, table, world.trial(trial, run.spec)))
             for record, truth in steps:
                 row = ids[record.row.step]
-                store.save_step(trial, spec, record, truth, row)
-                yield SolvedStep(spec, record, row)
-            store.end_trial(trial, steps.end)
-            yield SolvedTrial(trial, spec, steps.end)
-    store.finish_session(session, now())
+                store.trials.save_step(number, trial, record, truth, row)
+                yield SolvedStep(trial, record, row)
+            store.trials.end(number, steps.end)
+            yield SolvedTrial(number, trial, steps.end)
+    store.sessions.finish(session, now())
+
+
+def session_spec(kind: str, run: LearningRunInfo, trial: TrialSpec) -> SessionSpec:
+    """Return what a session of trials with a stored table is a function of.
+
+    Args:
+        kind: which command.
+        run: whose table is used; of several the first.
+        trial: one of its trials.
+    """
+    learned = run.spec
+    return SessionSpec(
+        kind=kind,
+        seed=trial.seed,
+        robots=1,
+        world=trial.world,
+        repertoire=learned.repertoire,
+        binding=learned.binding,
+        explorer=learned.explorer,
+        planner=trial.planner,
+        sensor=trial.sensor,
+        settings=learned.settings,
+        task_set=trial.task.task_set,
+    )

@@ -3,31 +3,25 @@
 from collections.abc import Callable, Iterator
 from itertools import islice
 
-from affcli.config import Settings, settings_from_json, with_sensor
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.observation import SensorKind
+from affcli.core.ports import Setting
+from affcli.core.records import LearningRunInfo
+from affcli.core.specs import LearningSpec, VerificationSpec
+from affcli.core.tool import Tool
 from affcli.core.trial import Truth
-from affcli.core.verification import (
-    Evidence,
-    ReplicationRecord,
-    Verdict,
-    VerificationSpec,
-    decided_after,
-)
+from affcli.core.verification import Evidence, ReplicationRecord, Verdict, decided_after
 from affcli.errors import UsageError
-from affcli.lab.bench import VERIFICATION, Bench, stable_number, tool_named
-from affcli.lab.plausible import learned_table
-from affcli.lab.sensing import calibration_of
+from affcli.lab.run_parts import world_of
 from affcli.lab.versions import versions
 from affcli.procedures.verification import verify as verify_rows
 from affcli.report.verification import Checked
-from affcli.simulation.world import World
-from affcli.store import LearningRunInfo, Store
+from affcli.store import Store
 
 
 def verification_spec(
     run: LearningRunInfo,
-    shape: str,
+    held: Tool,
     seed: int,
     sensor: SensorKind | None,
     tries: int | None,
@@ -38,7 +32,7 @@ def verification_spec(
 
     Args:
         run: the learning run whose table is tested.
-        shape: the shape that the robot truly holds.
+        held: the tool that the robot truly holds.
         seed: of places, order and noise.
         sensor: through what the robot sees; None for what it learned with.
         tries: how many at most; None for as many as there are rows, so that each is tried once.
@@ -52,14 +46,16 @@ def verification_spec(
             f"run {run.id} of the {run.spec.tool} made no rows: there is nothing to verify; "
             "learn for longer"
         )
-    kind = sensor or settings_from_json(run.spec.settings).sensor.kind
     many = run.rows if tries is None else tries
-    return VerificationSpec(run.spec.tool, shape, seed, run.spec.robot, kind, many, until_verdict)
+    kind = sensor or run.spec.sensor
+    return VerificationSpec(
+        run.spec.tool, held, seed, run.spec.robot, kind, many, until_verdict=until_verdict
+    )
 
 
 def replications(
-    spec: VerificationSpec, settings: Settings, table: AffordanceTable
-) -> Iterator[tuple[ReplicationRecord, Truth]]:
+    spec: VerificationSpec, learned: LearningSpec, table: AffordanceTable
+) -> Iterator[tuple[ReplicationRecord, Truth | None]]:
     """Run one verification; the table's counters change as it goes.
 
     How often the rows were used before is part of its random streams: the same seed gives a table
@@ -67,29 +63,28 @@ def replications(
 
     Args:
         spec: which verification.
-        settings: those of the learning run, but for the sensor, which `spec` names.
+        learned: how the table was learned.
         table: what the robot learned of `spec.tool`.
     """
-    settings = with_sensor(settings, spec.sensor)
-    world = World(settings.workspace, settings.physics)
-    names = (stable_number(spec.tool), stable_number(spec.shape))
-    key = (VERIFICATION, spec.seed, spec.robot, *names, int(table.times_used.sum()))
-    bench = Bench.of(settings, world, *key)
-    believed = tool_named(settings, spec.tool)
-    bench.experimenter.lay_out_verification(
-        tool_named(settings, spec.shape).painted(believed.color)
-    )
+    uses = int(table.times_used.sum())
+    return _replications(spec, table, world_of(learned).verification(spec, learned, uses))
+
+
+def _replications(
+    spec: VerificationSpec, table: AffordanceTable, setting: Setting
+) -> Iterator[tuple[ReplicationRecord, Truth | None]]:
+    """Run one verification in a world that was laid out for it."""
     records = verify_rows(
-        bench.robot,
-        bench.sensor,
-        bench.experimenter,
+        setting.robot,
+        setting.sensor,
+        setting.experimenter,
         table,
-        bench.behaviors.binding,
-        bench.streams["choices"],
+        setting.binding,
+        setting.choices,
     )
     evidence = Evidence()
     for record in islice(records, spec.tries):
-        yield record, bench.truth()
+        yield record, setting.truth()
         evidence = evidence.after(record)
         if spec.until_verdict and evidence.verdict is not Verdict.UNDECIDED:
             return
@@ -116,22 +111,22 @@ def verify(
     Yields:
         Each try; once it is saved, if it is.
     """
-    settings = settings_from_json(run.spec.settings)
+    table, ids = store.learning.table(run.id)
+    world = world_of(run.spec)
+    setting = world.verification(spec, run.spec, int(table.times_used.sum()))
     # A camera that is not there, or cannot be calibrated, is found before anything is recorded.
-    calibration = calibration_of(with_sensor(settings, spec.sensor), spec.seed, spec.robot)
-    table, ids = learned_table(store, run, settings)
-    learned = tool_named(settings, spec.tool)
+    calibration = setting.calibration
     number = 0
     if update:
-        made_with = versions(spec.sensor)
-        number = store.begin_verification(run.id, spec, made_with, now(), calibration)
+        made_with = versions(world, spec.sensor)
+        number = store.verifications.begin(run.id, spec, made_with, now(), calibration)
     done = []
-    for record, truth in replications(spec, settings, table):
+    for record, truth in _replications(spec, table, setting):
         row_id = ids[record.row.step]
         if update:
-            store.save_replication(number, record, truth, row_id)
+            store.verifications.save(number, record, truth, row_id)
         done.append(record)
-        nearest = learned.part_nearest(record.row.start.wrist_to_object)
+        nearest = run.spec.held.part_nearest(record.row.start.wrist_to_object)
         yield Checked(record, row_id, nearest.name)
     if update:
-        store.end_verification(number, Evidence.of(done).verdict, decided_after(done), now())
+        store.verifications.end(number, Evidence.of(done).verdict, decided_after(done), now())

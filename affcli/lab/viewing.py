@@ -6,24 +6,29 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from affcli.config import Settings, settings_from_json, with_sensor
-from affcli.core.behavior import POSITION_WRIST, BehaviorCall
-from affcli.core.geometry import Pose
+from affcli import registry
+from affcli.behaviors.grasping import hold_of
+from affcli.behaviors.positioning import position_wrist
+from affcli.config import Settings
+from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Observation
+from affcli.core.records import StepScene
 from affcli.core.scene import Scene
-from affcli.core.task import goal_regions, start_positions
 from affcli.core.tool import PUCK_COLOR
-from affcli.lab.bench import TRIAL, Bench, tool_named
 from affcli.lab.filming import FRAME_RATE, Reel
-from affcli.lab.plausible import check_scene
-from affcli.lab.sensing import eye_of
-from affcli.simulation.world import World
+from affcli.lab.run_parts import settings_of
+from affcli.simulation.robot import SimulatedRobot
+from affcli.simulation.sensing import eye_of
+from affcli.simulation.table import Table
+from affcli.simulation.tasks.extension_of_reach import goal_regions, start_positions
 
 if TYPE_CHECKING:
     from affcli.perception.rendering import Picture
     from affcli.perception.segmentation import Segmentation
-    from affcli.store import StepScene
+    from affcli.perception.camera_sensor import Eye
 
+SHOWN = "t-hook"
+"""The tool in a picture that is of no run."""
 VIEW = 3
 """First word of the key of the random stream that decides the noise in a picture made to be looked
 at: it is not that of the picture the robot saw then."""
@@ -55,7 +60,7 @@ def view_of_pattern(settings: Settings, seed: int) -> View:
     from affcli.perception.palette import MARKER_COLOR, ColorClass, Role
     from affcli.perception.segmentation import Segmenter
 
-    eye = eye_of(settings, seed, 0)
+    eye = _eye(settings, seed)
     pattern = table_pattern(settings.camera, settings.workspace)
     rng = np.random.Generator(np.random.PCG64((VIEW, seed)))
     markers = ColorClass("", MARKER_COLOR, Role.OBJECT)
@@ -66,23 +71,22 @@ def view_of_pattern(settings: Settings, seed: int) -> View:
 
 def view_of_table(settings: Settings, seed: int) -> View:
     """Return the table as a trial with the T-hook begins: goal 4, start 2."""
-    layout = settings.workspace.layout
+    workspace = settings.workspace
+    start, wrist = start_positions(workspace.layout)["2"], workspace.wrist_start
     scene = Scene(
-        Pose(*start_positions(layout)[2]),
+        Pose(start.x, start.y),
         PUCK_COLOR,
-        settings.workspace.wrist_start,
-        tool_named(settings, "t-hook"),
-        goal_regions(layout)[4],
+        Pose(wrist.x, wrist.y),
+        registry.tool(SHOWN, workspace.tools),
+        goal_regions(workspace.layout)["4"],
     )
-    return View(
-        "The beginning of a trial with the t-hook", _seen(scene, settings, seed, 0, VIEW, seed)
-    )
+    seen = _seen(scene, _eye(settings, seed), VIEW, seed)
+    return View(f"The beginning of a trial with the {SHOWN}", seen)
 
 
-def view_of_step(step: "StepScene", *, after: bool) -> View:
+def view_of_step(step: StepScene, *, after: bool) -> View:
     """Return the table as it was before an exploratory behavior, or after it."""
-    settings = settings_from_json(step.settings)
-    scene = _scene(step, settings)
+    scene = _scene(step)
     if after:
         attractor, wrist = step.attractor_end, step.wrist_end
     else:
@@ -92,7 +96,7 @@ def view_of_step(step: "StepScene", *, after: bool) -> View:
     what = f"{step.title}, {moment} {step.call}"
     if step.blocked:
         what = f"{step.title}: blocked, {step.call} was not executed"
-    return View(what, _seen(scene, settings, step.seed, step.robot, VIEW, *step.key))
+    return View(what, _seen(scene, _eye_of(step), VIEW, *step.key))
 
 
 def film_of_step(step: "StepScene", ending: str, *, frame_alone: bool) -> bytes:
@@ -111,55 +115,66 @@ def film_of_step(step: "StepScene", ending: str, *, frame_alone: bool) -> bytes:
     """
     from affcli.perception.view import side_by_side, video
 
-    settings = settings_from_json(step.settings)
     rng = np.random.Generator(np.random.PCG64((VIEW, *step.key)))
-    eye = eye_of(settings, step.seed, step.robot)
+    eye = _eye_of(step)
     title = f"{step.title}, {step.call}"
 
     def pictures() -> Iterator["Picture"]:
         """Yield one picture after the other: a long stillness would fill the memory."""
-        for scene in scenes_of_step(step, settings):
+        for scene in scenes_of_step(step):
             picture = eye.renderer.take(scene, rng)
             yield picture if frame_alone else side_by_side(eye.segmenter.segment(picture), title)
 
     return video(pictures(), ending, FRAME_RATE)
 
 
-def scenes_of_step(step: "StepScene", settings: Settings) -> list[Scene]:
+def scenes_of_step(step: StepScene) -> list[Scene]:
     """Return the scenes of a step, 15 a robot second."""
-    world = World(settings.workspace, settings.physics)
-    bench = Bench.of(with_sensor(settings, "exact"), world, TRIAL, step.seed, step.robot)
-    begins = _scene(step, settings)
-    world.tool, world.goal = begins.tool, begins.goal
-    world.wrist = step.wrist_before or world.home
-    world.attractor = begins.attractor
+    settings, begins = settings_of(step.learned), _scene(step)
+    table = Table(settings.workspace, settings.physics)
+    table.put_down(step.held.painted(step.learned.held.color))
+    table.take(hold_of(step.learned.binding))
+    table.goal = begins.goal
+    table.wrist = step.wrist_before or table.home
+    table.attractor = begins.attractor
+    robot = SimulatedRobot(table, step.learned.repertoire)
     reel = Reel()
-    bench.robot.film = reel
+    robot.film = reel
     target = step.wrist_end if step.blocked else step.wrist_start
     # With an offset of zero, position wrist goes to where the attractor was seen: to the target.
     aim = Observation(target.x, target.y, *[0.0] * 10)
-    bench.robot.execute(BehaviorCall.of(POSITION_WRIST, {"x": 0.0, "y": 0.0}), aim)
+    robot.execute(position_wrist(Point(0.0, 0.0), target.angle), aim)
     if not step.blocked:
-        bench.robot.execute(step.call, aim)
+        robot.execute(step.call, aim)
     return list(reel.cut())
 
 
-def _scene(step: "StepScene", settings: Settings) -> Scene:
+def _scene(step: StepScene) -> Scene:
     """Return the scene in which a step began."""
-    check_scene(step, settings)
-    believed = tool_named(settings, step.tool)
-    goals = goal_regions(settings.workspace.layout)
+    believed = step.learned.held
     return Scene(
         Pose(*step.attractor_start),
         PUCK_COLOR,
         step.wrist_start,
-        tool_named(settings, step.shape).painted(believed.color),
-        None if step.goal is None else goals[step.goal],
+        step.held.painted(believed.color).held(hold_of(step.learned.binding)),
+        step.goal,
     )
 
 
-def _seen(scene: Scene, settings: Settings, seed: int, robot: int, *key: int) -> "Segmentation":
+def _eye(settings: Settings, seed: int) -> "Eye":
+    """Return a camera of these settings, and of robot 0, which may see the tool that is shown."""
+    tool = registry.tool(SHOWN, settings.workspace.tools)
+    return eye_of(settings.camera, settings.workspace, tool, seed, 0)
+
+
+def _eye_of(step: StepScene) -> "Eye":
+    """Return the camera of the robot whose step it is."""
+    settings = settings_of(step.learned)
+    believed = step.learned.held
+    return eye_of(settings.camera, settings.workspace, believed, step.seed, step.robot)
+
+
+def _seen(scene: Scene, eye: "Eye", *key: int) -> "Segmentation":
     """Take a picture of a scene and segment it."""
-    eye = eye_of(settings, seed, robot)
     rng = np.random.Generator(np.random.PCG64(key))
     return eye.segmenter.segment(eye.renderer.take(scene, rng))

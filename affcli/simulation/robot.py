@@ -160,7 +160,7 @@ class SimulatedRobot:
         return watch
 
     def _film_carrying(self, target: Pose, film: Film) -> None:
-        """Show a film how the tool is lifted, carried to `target`, turned on the way, and lowered."""
+        """Show a film how the tool is lifted, carried to `target` and turned, and lowered."""
         timing, height = self._table.workspace.motion, self._table.workspace.arm.lift_height
         speed, acceleration = timing.transfer_speed, timing.transfer_acceleration
         start = self._table.wrist

@@ -12,7 +12,6 @@ from affcli.core.behavior import BehaviorCall
 from affcli.core.geometry import Pose
 from affcli.core.identity import stream_number
 from affcli.core.observation import Movement, SensorKind
-from affcli.core.part import Part
 from affcli.core.ports import Film, Sensor
 from affcli.core.scene import Scene
 from affcli.core.specs import LearningSpec, RowStarts, TrialSpec, VerificationSpec
@@ -28,9 +27,7 @@ from affcli.simulation.robot import SimulatedRobot
 from affcli.simulation.sensing import SimulatedSight
 from affcli.simulation.table import Table
 from affcli.simulation.tasks import extension_of_reach
-
-VERSION = 1
-"""Of the world: raised when equal specs give other records, by another physics for example."""
+from affcli.simulation.worlds import TABLE, TABLE_VERSION
 
 LEARNING, TRIAL, VERIFICATION, PREDICTION = 0, 1, 3, 4
 """First word of a random stream's key: what it is for. 2 is a camera's power-up (`sensing`)."""
@@ -142,8 +139,8 @@ class TableWorld:
         settings: of everything on it.
     """
 
-    name = "table"
-    version = VERSION
+    name = TABLE
+    version = TABLE_VERSION
     unit = "in"
     exact_replay = True
 
@@ -289,15 +286,3 @@ def _check_stream(value: Any) -> None:
     known = value.keys() == STREAM.keys() and value["bit_generator"] == "PCG64"
     if not known or not all(isinstance(n, int) and 0 <= n < limit for n, limit in numbers):
         raise ValueError("no state of a random stream")
-
-
-PARTS = (
-    Part(
-        kind="worlds",
-        name=TableWorld.name,
-        summary="the paper's table: a five-axis arm, a hockey puck, pushing in pymunk",
-        source="Stoytchev 2008, §4",
-        build=TableWorld,
-        version=VERSION,
-    ),
-)

@@ -1,0 +1,158 @@
+"""The parts that a run carries: chosen by name for a new one, brought back for a stored one."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+from affcli import registry
+from affcli.config import Settings, require_known, settings_from, with_sensor
+from affcli.core.behavior import BehaviorCall, Repertoire
+from affcli.core.identity import Component, canonical_json
+from affcli.core.observation import SensorKind
+from affcli.core.ports import World
+from affcli.core.specs import LearningSpec
+from affcli.core.tool import Tool
+from affcli.errors import BadInputError, DatabaseError
+
+
+@dataclass(frozen=True, slots=True)
+class RunParts:
+    """What new learning runs carry, but for the tool, the seed and the time.
+
+    Args:
+        settings: all of them.
+        world: where they take place.
+        repertoire: the exploratory behaviors, by value.
+        binding: how the tool is held.
+        explorer: how the robot chooses what to try next.
+        sensor: through what it sees.
+    """
+
+    settings: Settings
+    world: Component
+    repertoire: Repertoire
+    binding: BehaviorCall
+    explorer: Component
+    sensor: SensorKind
+
+    @classmethod
+    def chosen(
+        cls,
+        settings: Settings,
+        *,
+        repertoire: Sequence[str] = (),
+        binding: str | None = None,
+        explorer: str | None = None,
+        world: str | None = None,
+    ) -> "RunParts":
+        """Return the parts that a user named, each as ``name:key=value``; the paper's for the rest.
+
+        Raises:
+            UsageError: no part of that name.
+            BadInputError: a wrong parameter.
+        """
+        usual = registry.DEFAULTS
+        return cls(
+            settings,
+            registry.component("worlds", world or usual["world"]),
+            registry.repertoire(repertoire or [usual["repertoire"]]),
+            registry.binding(binding or usual["binding"], settings.workspace.tools),
+            registry.component("explorers", explorer or usual["explorer"]),
+            settings.sensor.kind,
+        )
+
+    def spec(
+        self, tool: str, seed: int, robot: int, hours: float | None, behaviors: int | None = None
+    ) -> LearningSpec:
+        """Return what a learning run with these parts is a function of.
+
+        Args:
+            tool: name of a registered tool.
+            seed, robot, hours, behaviors: as in `LearningSpec`.
+        """
+        return LearningSpec(
+            held=self.tool(tool),
+            seed=seed,
+            robot=robot,
+            hours=hours,
+            behaviors=behaviors,
+            settings=settings_json(self.settings),
+            world=self.world,
+            repertoire=self.repertoire,
+            binding=self.binding,
+            explorer=self.explorer,
+            sensor=self.sensor,
+        )
+
+    def tool(self, name: str) -> Tool:
+        """Return a registered tool in these settings' sizes; UsageError for an unknown one."""
+        return registry.tool(name, self.settings.workspace.tools)
+
+
+def settings_json(settings: Settings) -> str:
+    """Return what differs from the first defaults, as a spec keeps it."""
+    return canonical_json(settings.differing())
+
+
+def settings_of(learned: LearningSpec, sensor: SensorKind | None = None) -> Settings:
+    """Return the settings of a learning run, seen through its own sensor or another."""
+    return with_sensor(_settings(learned.settings), sensor or learned.sensor)
+
+
+def tool_of(learned: LearningSpec, name: str) -> Tool:
+    """Return a tool by name: the one that was learned, else a registered one in the run's sizes."""
+    if name == learned.tool:
+        return learned.held
+    return registry.tool(name, _settings(learned.settings).workspace.tools)
+
+
+def world_of(learned: LearningSpec, *, again: bool = False) -> World:
+    """Return the world of a learning run: made here and nowhere else.
+
+    Args:
+        learned: the run.
+        again: what was done there is to be done again, so it must be the same version of the world.
+
+    Raises:
+        UsageError: this affcli has no such world.
+        BadInputError: it has another version of it, or settings it does not know.
+        DatabaseError: the shape of the run's tool is not known.
+    """
+    settings = settings_of(learned)
+    require_known(settings)
+    if not learned.held.parts:
+        raise DatabaseError(
+            f"this affcli does not know what a {learned.tool} looks like; install the affcli that "
+            "made the record"
+        )
+    chosen = learned.world
+    if not again:
+        chosen = registry.component("worlds", learned.world.name)
+    return registry.world(chosen, settings)
+
+
+def require_world_version(made: Component) -> None:
+    """Refuse to do again what was made in another version of the world.
+
+    Raises:
+        BadInputError: naming both versions.
+    """
+    now = registry.part("worlds", made.name).version
+    if now != made.version:
+        raise BadInputError(
+            f"made in version {made.version} of the world {made.name}, this affcli has {now}: it "
+            "cannot be done again to the bit; install the affcli that made it"
+        )
+
+
+@lru_cache(maxsize=16)
+def _settings(text: str) -> Settings:
+    """Return the settings that a spec keeps."""
+    try:
+        differing = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise DatabaseError("stored settings that are no JSON; restore a copy") from error
+    if not isinstance(differing, dict):
+        raise DatabaseError("stored settings without names; restore a copy")
+    return settings_from(differing)
