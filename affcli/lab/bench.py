@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from affcli.behaviors.registry import BehaviorRegistry, paper_behaviors
-from affcli.config import Settings
+from affcli.config import Settings, require_known
 from affcli.core.ports import Sensor
 from affcli.core.tool import Tool, ToolName, paper_tools
 from affcli.core.trial import Truth
@@ -53,7 +53,11 @@ class Bench:
             purpose: `LEARNING`, `TRIAL`, `VERIFICATION` or `PREDICTION`.
             seed, robot: whose bench it is.
             words: what else tells its streams from others'.
+
+        Raises:
+            DatabaseError: the settings hold some that this version does not know.
         """
+        require_known(settings)
         workspace = settings.workspace
         sequence = np.random.SeedSequence((purpose, seed, robot, *words))
         streams = {

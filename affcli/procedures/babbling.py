@@ -10,6 +10,7 @@ from affcli.core.behavior import POSITION_WRIST, BehaviorCall, Execution, Execut
 from affcli.core.change_detection import change_detected
 from affcli.core.observation import Observation
 from affcli.core.ports import Experimenter, Robot, Sensor
+from affcli.core.setting import setting
 from affcli.core.trial import BabblingRecord
 from affcli.errors import BadInputError
 
@@ -25,12 +26,14 @@ class BabblingSettings:
     touch. Inches, in the wrist's frame.
     """
 
-    offset_x_max: float = 7.5
-    """|x| of position wrist is at most this."""
-    offset_y_min: float = 6.8
-    offset_y_max: float = 19.2
-    draws: int = 256
-    """After this many wrist positions in vain the attractor is put back, as if out of reach."""
+    offset_x_max: float = setting(7.5, "in", "|x| of position wrist is at most this.")
+    offset_y_min: float = setting(6.8, "in", "y of position wrist is at least this.")
+    offset_y_max: float = setting(19.2, "in", "y of position wrist is at most this.")
+    draws: int = setting(
+        256,
+        "",
+        "After this many wrist positions in vain the attractor is put back, as if out of reach.",
+    )
 
 
 @dataclass(slots=True)

@@ -7,6 +7,7 @@ from affcli.core.affordance_table import AffordanceTable
 from affcli.core.behavior import BehaviorCall
 from affcli.core.observation import Observation
 from affcli.core.ports import Experimenter, Robot, Sensor
+from affcli.core.setting import setting
 from affcli.core.task import GoalRegion
 from affcli.core.trial import Outcome, StepRecord, TrialEnd
 from affcli.errors import SimulationDivergedError
@@ -18,8 +19,11 @@ from affcli.procedures.attempt import attempt
 class TrialLimits:
     """When a trial is given up."""
 
-    max_steps: int = 60
-    """Steps after which the experimenter ends the trial; the paper names no limit."""
+    max_steps: int = setting(
+        60,
+        "",
+        "Steps after which the experimenter ends the trial; the paper names no limit.",
+    )
 
 
 def extension_of_reach(
