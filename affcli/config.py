@@ -8,7 +8,8 @@ A stored run keeps only what differs from the defaults number 1 (`Settings.diffe
 - When a default changes, its former value goes into `CHANGED` and `DEFAULTS` is raised. Stored runs
   keep the former value; a new run with the new default says so in its stored form.
 - When a setting is renamed, its first name goes into `RENAMED`. It is stored under that for ever.
-- When a setting is removed, runs that changed it can still be read, not run.
+- When a setting is removed, or its limits become narrower, runs that had what is no longer possible
+  can be read, not run.
 """
 
 import difflib
@@ -59,7 +60,7 @@ _TEXT_OR_REMARK = re.compile(
     r'"""(?:\\.|[^\\])*?"""|' + r"'''.*?'''|" + r'"(?:\\.|[^"\\\n])*"|' + r"'[^'\n]*'|#[^\n]*",
     re.DOTALL,
 )
-_LONG_KEY = re.compile(r"\.(?:[ \t]*+[\w-]*+[ \t]*+\.){%d}" % DEEPEST)  # noqa: UP031 braces
+_LONG_KEY = re.compile(r"\.(?:[ \t]*+[\w-]*+[ \t]*+\.){" + str(DEEPEST) + "}")
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,7 @@ def settings(
 
     With --config or --set only those that differ from the defaults.
     """
-    from affcli.config import known_settings, load_settings
+    from affcli.config import DEFAULTS, known_settings, load_settings
     from affcli.report.settings import settings_json, settings_tables, settings_toml
 
     if as_toml and as_json:
@@ -37,7 +37,7 @@ def settings(
     if as_json:
         show_json(settings_json(shown))
     elif as_toml:
-        show_text(settings_toml(shown))
+        show_text(settings_toml(shown, DEFAULTS))
     elif shown:
         show(*settings_tables(shown, values=chosen))
     else:

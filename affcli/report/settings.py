@@ -30,9 +30,17 @@ def settings_tables(settings: Settings, *, values: bool) -> Iterator[Sheet]:
         yield sheet
 
 
-def settings_toml(settings: Settings) -> str:
-    """Return a file of settings, each with its meaning, unit, limits and default before it."""
-    lines = ["# Settings of affcli. Keep the lines that you change; --config reads this file."]
+def settings_toml(settings: Settings, defaults: int) -> str:
+    """Return a file of settings, each with its meaning, unit, limits and default before it.
+
+    Args:
+        settings: those to be written.
+        defaults: the number of the defaults.
+    """
+    lines = [
+        f"# Settings of affcli, defaults number {defaults}; --config reads this file.",
+        "# Keep the lines that you change.",
+    ]
     for section, entries in _by_section(settings):
         lines += ["", f"[{section}]"]
         for key, one, value in entries:
