@@ -1,64 +1,67 @@
-"""All settings: typed, frozen defaults; overrides from TOML; canonical JSON for the record."""
+"""All settings: typed, frozen defaults; what differs from them; overrides from TOML and --set.
 
+What a setting means, its unit and its limits stand on its field (`affcli.core.setting`).
+
+A stored run keeps only what differs from the defaults number 1 (`Settings.differing`), for years:
+
+- A new setting changes no stored form: add a field with a default.
+- When a default changes, its former value goes into `CHANGED` and `DEFAULTS` is raised. Stored runs
+  keep the former value; a new run with the new default says so in its stored form.
+- When a setting is renamed, its first name goes into `RENAMED`. It is stored under that for ever.
+- When a setting is removed, or its limits become narrower, runs that had what is no longer possible
+  can be read, not run.
+"""
+
+import difflib
 import json
+import re
 import tomllib
-from dataclasses import asdict, dataclass, field, fields, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
+from itertools import accumulate
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Any
 
-from affcli.core.observation import SENSOR_KINDS, SensorKind
+from affcli.core.babbling_box import BabblingSettings
+from affcli.core.observation import SensorKind
+from affcli.core.setting import LARGEST, Setting, Value, settings_of
 from affcli.core.tool import Color
 from affcli.core.workspace import Workspace
-from affcli.errors import BadInputError, one_line
+from affcli.errors import BadInputError, DatabaseError, one_line
 from affcli.perception.camera_settings import CameraSettings
 from affcli.perception.noisy_sensor import SensorSettings
-from affcli.perception.palette import ColorClass, Role, palette, paper_palette
-from affcli.core.babbling_box import BabblingSettings
+from affcli.perception.palette import ColorClass, Role, palette, table_palette
 from affcli.procedures.extension_of_reach import TrialLimits
 from affcli.simulation.physics_settings import PhysicsSettings
+from affcli.simulation.tools.paper import paper_tools
 
-CHOICES = {"sensor.kind": SENSOR_KINDS}
-MAY_BE_NEGATIVE = frozenset({"arm.shoulder_min_degrees", "camera.x", "camera.y"})
-MAY_BE_ZERO = frozenset(
-    {
-        "arm.flange_height",
-        "camera.blur_px",
-        "camera.grey_noise",
-        "camera.tilt_degrees",
-        "camera.turn_degrees",
-        "camera.uneven_light",
-        "friction.tool_puck",
-        "tools.handle_below_grasp",
-        "sensor.position_noise",
-        "sensor.color_noise",
-        "motion.hold",
-        "motion.grasp_time",
-    }
+DEFAULTS = 1
+"""The number of the defaults that the fields hold; raise it with each change of a default."""
+CHANGED: dict[str, tuple[Value, ...]] = {}
+"""The former defaults of each setting whose default has changed, that of number 1 first."""
+RENAMED: dict[str, str] = {}
+"""The first name of each setting that has another name now, by that name."""
+SENSOR = "sensor.kind"
+"""The setting that a stored run names beside its settings."""
+ORDERED = (
+    ("tools.part_width", "tools.hook_length"),
+    ("tools.part_width", "tools.bar_reach"),
+    ("tools.hook_length", "tools.handle_length"),
+    ("table.near", "table.far"),
+    ("babbling.offset_y_min", "babbling.offset_y_max"),
+    ("arm.shoulder_min_degrees", "arm.shoulder_max_degrees"),
 )
-AT_LEAST = {
-    "camera.distortion_per_mm2": -0.05,
-    "physics.collision_slop": 1e-9,
-    "physics.overlap_mended": 1e-6,
-}
-AT_MOST = {
-    "arm.waist_max_degrees": 90.0,
-    "arm.elbow_max_degrees": 180.0,
-    "camera.blur_px": 20.0,
-    "camera.distortion_per_mm2": 0.05,
-    "camera.focal_length_mm": 100.0,
-    "camera.grey_noise": 255.0,
-    "camera.height": 1000.0,
-    "camera.tilt_degrees": 89.0,
-    "camera.turn_degrees": 360.0,
-    "camera.uneven_light": 0.9,
-    "physics.overlap_mended": 1.0,
-    "sensor.position_noise": 10.0,
-    "sensor.color_noise": 255.0,
-}
+"""Settings of which the first must be less than the second."""
+
 LARGEST_FILE = 1_000_000
 """Bytes of a file of settings; all of them take some 2,000."""
-LARGEST, SMALLEST = 1e6, 1e-3
-"""No length, speed, time or count of this laboratory lies beyond them."""
+DEEPEST = 4
+"""Dots in a key, and lists and tables in one another, in a file of settings; two would do."""
+_TEXT_OR_REMARK = re.compile(
+    r'"""(?:\\.|[^\\])*?"""|' + r"'''.*?'''|" + r'"(?:\\.|[^"\\\n])*"|' + r"'[^'\n]*'|#[^\n]*",
+    re.DOTALL,
+)
+_LONG_KEY = re.compile(r"\.(?:[ \t]*+[\w-]*+[ \t]*+\.){" + str(DEEPEST) + "}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +76,7 @@ class Settings:
         physics: how finely pushing is solved.
         babbling: where the robot plays.
         trial: when it gives up.
+        unknown: stored settings that this version does not know, and values that it does not take.
     """
 
     workspace: Workspace = field(default_factory=Workspace)
@@ -81,41 +85,144 @@ class Settings:
     physics: PhysicsSettings = field(default_factory=PhysicsSettings)
     babbling: BabblingSettings = field(default_factory=BabblingSettings)
     trial: TrialLimits = field(default_factory=TrialLimits)
+    unknown: tuple[tuple[str, Value], ...] = ()
+
+    def values(self) -> dict[str, Value]:
+        """Return every setting by its name, ``section.key``."""
+        known = known_settings()
+        return {
+            name: known[name].canonical(value) for name, value in _flat(_sections(self)).items()
+        }
+
+    def differing(self) -> dict[str, Value]:
+        """Return the settings that differ from the defaults number 1, sorted by their first names.
+
+        Equal settings give equal mappings, in every version. The kind of the sensor is left out:
+        a run names its sensor by itself.
+        """
+        return {name: value for name, value in _unusual(self).items() if name != SENSOR}
 
     def to_json(self) -> str:
-        """Return the settings as canonical JSON: equal settings give equal text."""
+        """Return all settings as canonical JSON: what revisions 0001 to 0003 of the schema store.
+
+        For these alone; `differing` is the form that stays the same in the next version.
+        """
         return json.dumps(_sections(self), sort_keys=True, separators=(",", ":"))
 
 
-def settings_from_json(text: str) -> Settings:
-    """Return the settings that `Settings.to_json` wrote.
+SECTIONS: dict[str, type[Any]] = {
+    part.name: part.type
+    for part in (*fields(Workspace), *fields(Settings))
+    if isinstance(part.type, type) and is_dataclass(part.type) and part.type is not Workspace
+}
+"""The sections of a file of settings, and what each is in the code."""
+
+
+def known_settings() -> dict[str, Setting]:
+    """Return every setting of this version by its name, ``section.key``."""
+    return {
+        f"{section}.{key}": one
+        for section, part in SECTIONS.items()
+        for key, one in settings_of(part).items()
+    }
+
+
+def settings_from(differing: Mapping[str, Any], source: str = "the stored settings") -> Settings:
+    """Return the settings of which `Settings.differing` gave `differing`, in this version or not.
+
+    What this version does not know is kept in `Settings.unknown`.
 
     Raises:
-        BadInputError: a section, key or value that this version does not know.
+        BadInputError: a value is no number or text, or values are impossible together; the message
+            quotes `source`.
     """
-    source = "the stored settings"
+    known, now = known_settings(), {first: name for name, first in RENAMED.items()}
+    values, unknown = _first_defaults(), []
+    for name, value in differing.items():
+        if not isinstance(value, Value):
+            raise BadInputError(
+                f"{source}: {one_line(name)} = {one_line(value)} is no number and no text; restore "
+                "a copy of the database"
+            )
+        own = now.get(name, name)
+        if own in known and not known[own].refusal(value):
+            values[own] = known[own].canonical(value)
+        else:
+            unknown.append((name, value))
+    return replace(_settings(values, source), unknown=tuple(sorted(unknown)))
+
+
+def require_known(settings: Settings) -> None:
+    """Refuse to run anything with stored settings that this version does not know.
+
+    Raises:
+        DatabaseError: there are such settings; the message names them.
+    """
+    if settings.unknown:
+        raise DatabaseError(
+            f"this version of affcli cannot run with {_in_words(dict(settings.unknown))}; "
+            "install the affcli that wrote it"
+        )
+
+
+def settings_from_json(text: str) -> Settings:
+    """Return the settings that `Settings.to_json` wrote: for revisions 0001 to 0003 alone.
+
+    What the text lacks has its default of number 1; the rest is as in `settings_from`.
+
+    Raises:
+        BadInputError: the text is none that `Settings.to_json` writes.
+    """
+    source, remedy = "the stored settings", "restore a copy of the database"
     try:
         stored = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise BadInputError(
-            f"{source}: {one_line(error)}; restore a copy of the database"
-        ) from error
-    if not isinstance(stored, dict):
-        raise BadInputError(f"{source}: no sections in them; restore a copy of the database")
-    return settings_with(stored, source)
+        raise BadInputError(f"{source}: {one_line(error)}; {remedy}") from error
+    if not isinstance(stored, dict) or not all(isinstance(own, dict) for own in stored.values()):
+        raise BadInputError(f"{source}: no sections in them; {remedy}")
+    return settings_from(_flat(stored), source)
 
 
-def load_settings(path: Path | None) -> Settings:
-    """Return the defaults with the overrides of a TOML file.
+def load_settings(path: Path | None, changes: Sequence[str] = ()) -> Settings:
+    """Return the defaults with the overrides of a TOML file, and over these `changes`.
+
+    Args:
+        path: the file; None for none.
+        changes: of ``--set``: ``section.key=value`` each.
 
     Raises:
-        BadInputError: the file cannot be read or parsed, or names an unknown section or key, or a
-            value of the wrong kind or range; the message names the path in the file.
+        BadInputError: the file cannot be read or parsed; or it or a change names an unknown section
+            or key, or a value of the wrong kind or range; the message names the place.
     """
-    if path is None:
-        return Settings()
-    source = f"config {one_line(path)}"
-    return settings_with(_toml(path, source), source)
+    values, source = _defaults(), ""
+    if path is not None:
+        source = f"config {one_line(path)}"
+        values |= _checked(_toml_file(path, source), source)
+    for change in changes:
+        values |= _checked(_change(change), "--set")
+    sources = (source, "--set" if changes else "")
+    return _settings(values, " and ".join(filter(None, sources)))
+
+
+def settings_with(overrides: Mapping[str, Any], source: str) -> Settings:
+    """Return the defaults with `overrides`: a mapping of sections to mappings of keys to values.
+
+    Raises:
+        BadInputError: as `load_settings`, quoting `source`.
+    """
+    return _settings(_defaults() | _checked(overrides, source), source)
+
+
+def with_sensor(settings: Settings, kind: SensorKind | None) -> Settings:
+    """Return the settings with another sensor; unchanged for None."""
+    if kind is None:
+        return settings
+    return replace(settings, sensor=replace(settings.sensor, kind=kind))
+
+
+def differences(settings: Settings) -> str:
+    """Return in words how settings differ from the defaults number 1: ``defaults``, or each one."""
+    return _in_words(_unusual(settings)) or "defaults"
 
 
 def load_colors(path: Path | None) -> tuple[ColorClass, ...]:
@@ -128,9 +235,10 @@ def load_colors(path: Path | None) -> tuple[ColorClass, ...]:
         BadInputError: the file cannot be read or parsed, a value is wrong, or colours are alike.
     """
     if path is None:
-        return paper_palette(Workspace())
+        tools = paper_tools(Workspace().tools).values()
+        return table_palette(Workspace(), {tool.name: tool.color for tool in tools})
     source = f"colors {one_line(path)}"
-    sections = _toml(path, source)
+    sections = _toml_file(path, source)
     if not sections:
         raise BadInputError(
             f"{source}: no colour in it; name one, as [cup] and rgb = [30, 110, 200]"
@@ -139,158 +247,156 @@ def load_colors(path: Path | None) -> tuple[ColorClass, ...]:
 
 
 def _color(name: str, value: object, source: str) -> ColorClass:
-    """Return one section of a file of colours."""
     shown = one_line(name, 40)
+    place = f"{source}: {shown}"
     if not isinstance(value, dict) or not set(value) <= {"rgb", "height"} or "rgb" not in value:
         raise BadInputError(f"{source}: [{shown}] must hold rgb = [red, green, blue], and height")
     rgb = value["rgb"]
-    if not isinstance(rgb, list) or len(rgb) != 3:
-        raise BadInputError(f"{source}: {shown}.rgb = {one_line(rgb)} must be three numbers")
-    for number in rgb:
-        if isinstance(number, bool) or not isinstance(number, int | float):
-            raise BadInputError(f"{source}: {shown}.rgb = {one_line(rgb)} must be three numbers")
-        if not 0 <= number <= 255:
-            raise BadInputError(f"{source}: {shown}.rgb = {one_line(rgb)} must lie in [0, 255]")
-    height = value.get("height", 0.0)
-    if isinstance(height, bool) or not isinstance(height, int | float):
-        raise BadInputError(f"{source}: {shown}.height = {one_line(height)} must be a number")
-    if not 0.0 <= height <= LARGEST:
-        raise BadInputError(
-            f"{source}: {shown}.height = {one_line(height)} must lie in [0, {LARGEST:g}]"
-        )
-    return ColorClass(name, Color(map(float, rgb)), Role.OBJECT, float(height))
+    numbers = [n for n in rgb if isinstance(n, int | float)] if isinstance(rgb, list) else []
+    if len(numbers) != 3 or rgb != numbers or any(isinstance(n, bool) for n in numbers):
+        raise BadInputError(f"{place}.rgb = {one_line(rgb)} must be three numbers")
+    if not all(0 <= n <= 255 for n in numbers):
+        raise BadInputError(f"{place}.rgb = {one_line(rgb)} must lie in [0, 255]")
+    over = Setting(0.0, "in", "", 0.0, LARGEST)
+    height = over.checked(value.get("height", 0.0), f"{place}.height")
+    return ColorClass(name, Color(map(float, numbers)), Role.OBJECT, float(height))
 
 
-def _toml(path: Path, source: str) -> dict[str, Any]:
-    """Return what a TOML file holds; BadInputError, quoting `source`, when it cannot be read."""
-    try:
-        with path.open("rb") as file:
-            text = file.read(LARGEST_FILE + 1)
-        if len(text) > LARGEST_FILE:
-            raise BadInputError(
-                f"{source}: more than {LARGEST_FILE} bytes; give a TOML file of settings"
-            )
-        return tomllib.loads(text.decode("utf-8"))
-    except OSError as error:
-        raise BadInputError(
-            f"{source}: {error.strerror}; give a TOML file that can be read"
-        ) from error
-    except (ValueError, RecursionError) as error:
-        raise BadInputError(f"{source}: not TOML: {one_line(error)}") from error
+def _defaults() -> dict[str, Value]:
+    return {name: one.default for name, one in known_settings().items()}
 
 
-def settings_with(overrides: dict[str, Any], source: str) -> Settings:
-    """Return the defaults with `overrides`: a mapping of sections to mappings of keys to numbers.
-
-    Raises:
-        BadInputError: as `load_settings`, quoting `source`.
-    """
-    settings = Settings()
-    workspace = settings.workspace
-    for section, values in overrides.items():
-        parts = {f.name for f in fields(workspace)}
-        owner: Any = workspace if section in parts else settings
-        if section == "workspace" or section not in {f.name for f in fields(owner)}:
-            known = sorted(_sections(settings))
-            raise BadInputError(
-                f"{source}: no section {one_line(section)}; the sections are {', '.join(known)}"
-            )
-        part = _overridden(getattr(owner, section), section, values, source)
-        if owner is workspace:
-            workspace = replace(workspace, **{section: part})
-        else:
-            settings = replace(settings, **{section: part})
-    _check_together(workspace, settings.babbling, source)
-    return replace(settings, workspace=workspace)
+def _first_defaults() -> dict[str, Value]:
+    """Return the defaults number 1, which stored settings differ from."""
+    return _defaults() | {name: former[0] for name, former in CHANGED.items()}
 
 
-def with_sensor(settings: Settings, kind: SensorKind | None) -> Settings:
-    """Return the settings with another sensor; unchanged for None."""
-    if kind is None:
-        return settings
-    return replace(settings, sensor=replace(settings.sensor, kind=kind))
+def _unusual(settings: Settings) -> dict[str, Value]:
+    """Return what differs from the defaults number 1, sorted by the first names."""
+    first = _first_defaults()
+    values = settings.values()
+    own = {RENAMED.get(n, n): value for n, value in values.items() if value != first[n]}
+    return dict(sorted({**own, **dict(settings.unknown)}.items()))
 
 
-def differences(text: str) -> str:
-    """Return in words how stored settings differ from the defaults: ``defaults``, or each key.
-
-    Args:
-        text: what `Settings.to_json` wrote.
-    """
-    own, usual = json.loads(text), _sections(Settings())
-    words = [
-        f"{section}.{key} = {value if isinstance(value, str) else format(value, 'g')}"
-        for section, values in sorted(own.items())
-        for key, value in sorted(values.items())
-        if value != usual.get(section, {}).get(key)
-    ]
-    return ", ".join(words) or "defaults"
+def _in_words(values: Mapping[str, Value]) -> str:
+    return ", ".join(
+        f"{one_line(name)} = {one_line(value) if isinstance(value, str) else format(value, 'g')}"
+        for name, value in values.items()
+    )
 
 
 def _sections(settings: Settings) -> dict[str, dict[str, Any]]:
     """Return the settings as the sections of the TOML file."""
     whole = asdict(settings)
+    del whole["unknown"]
     return {**whole.pop("workspace"), **whole}
 
 
-def _overridden(part: Any, section: str, values: object, source: str) -> Any:
-    """Return one section's dataclass with its overrides, checked."""
-    if not isinstance(values, dict):
-        raise BadInputError(f"{source}: {section} must be a section, [{section}]")
-    kinds = get_type_hints(type(part))
-    checked: dict[str, object] = {}
-    for key, value in values.items():
-        path = f"{section}.{one_line(key)}"
-        if key not in kinds:
-            raise BadInputError(f"{source}: no key {path}; known: {', '.join(sorted(kinds))}")
-        known = CHOICES.get(f"{section}.{key}")
-        if known is None:
-            checked[key] = _number(path, value, kinds[key], source)
-        elif isinstance(value, str) and value in known:
-            checked[key] = value
-        else:
-            raise BadInputError(
-                f"{source}: {path} = {one_line(value)} must be one of {', '.join(known)}"
-            )
-    return replace(part, **checked)
+def _flat(sections: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    return {f"{s}.{key}": value for s, own in sections.items() for key, value in own.items()}
 
 
-def _number(path: str, value: object, kind: type, source: str) -> float | int:
-    """Return `value` if it is a number of the right kind in the range of its key."""
-    wanted = "a whole number" if kind is int else "a number"
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise BadInputError(f"{source}: {path} = {one_line(value)} must be {wanted}")
-    if kind is int and not isinstance(value, int):
-        raise BadInputError(f"{source}: {path} = {value} must be {wanted}")
-    least = 1 if kind is int else SMALLEST
-    low = 0.0 if path in MAY_BE_ZERO else AT_LEAST.get(path, least)
-    low = -LARGEST if path in MAY_BE_NEGATIVE else low
-    high = AT_MOST.get(path, LARGEST)
-    if not low <= value <= high:
-        raise BadInputError(f"{source}: {path} = {one_line(value)} must lie in [{low:g}, {high:g}]")
-    return value if kind is int else float(value)
-
-
-def _check_together(workspace: Workspace, babbling: BabblingSettings, source: str) -> None:
-    """Refuse sizes that are each possible but not together."""
-    arm, tools, table = workspace.arm, workspace.tools, workspace.table
-    for lesser, less, greater, more in (
-        ("tools.part_width", tools.part_width, "tools.hook_length", tools.hook_length),
-        ("tools.part_width", tools.part_width, "tools.bar_reach", tools.bar_reach),
-        ("tools.hook_length", tools.hook_length, "tools.handle_length", tools.handle_length),
-        ("table.near", table.near, "table.far", table.far),
-        (
-            "babbling.offset_y_min",
-            babbling.offset_y_min,
-            "babbling.offset_y_max",
-            babbling.offset_y_max,
-        ),
-        (
-            *("arm.shoulder_min_degrees", arm.shoulder_min_degrees),
-            *("arm.shoulder_max_degrees", arm.shoulder_max_degrees),
-        ),
-    ):
+def _settings(values: Mapping[str, Value], source: str) -> Settings:
+    """Return the settings that have these values; refuse sizes that are impossible together."""
+    for lesser, greater in ORDERED:
+        less, more = float(values[lesser]), float(values[greater])
         if less >= more:
             raise BadInputError(
                 f"{source}: {lesser} = {less:g} must be less than {greater} = {more:g}"
             )
+    parts: dict[str, Any] = {
+        section: part(**{key: values[f"{section}.{key}"] for key in settings_of(part)})
+        for section, part in SECTIONS.items()
+    }
+    workspace = Workspace(**{part.name: parts.pop(part.name) for part in fields(Workspace)})
+    return Settings(workspace=workspace, **parts)
+
+
+def _checked(sections: Mapping[str, Any], source: str) -> dict[str, Value]:
+    """Return what someone wrote in sections as values by the names of this version."""
+    known, now = known_settings(), {first: name for name, first in RENAMED.items()}
+    values = {}
+    for section, own in sections.items():
+        if section not in SECTIONS:
+            raise BadInputError(
+                f"{source}: no section {one_line(section)}; the sections are "
+                f"{', '.join(sorted(SECTIONS))}{_did_you_mean(section)}"
+            )
+        if not isinstance(own, dict):
+            raise BadInputError(f"{source}: {section} must be a section, [{section}]")
+        for key, value in own.items():
+            name = now.get(f"{section}.{key}", f"{section}.{key}")
+            if name not in known:
+                keys = ", ".join(sorted(settings_of(SECTIONS[section])))
+                raise BadInputError(
+                    f"{source}: no key {one_line(name)}; known: {keys}{_did_you_mean(name)}"
+                )
+            values[name] = known[name].checked(value, f"{source}: {name}")
+    return values
+
+
+def _did_you_mean(name: str) -> str:
+    """Return which sections and settings have a name like this one, as the end of a message."""
+    names = {key: key for key in SECTIONS}
+    for known in known_settings():
+        names |= {known: known, known.split(".")[1]: known}
+    near = [names[one] for one in difflib.get_close_matches(name[:60], names)]
+    return f"; did you mean {' or '.join(dict.fromkeys(near))}?" if near else ""
+
+
+def _change(change: str) -> dict[str, dict[str, Any]]:
+    """Return what ``section.key=value`` says, as a TOML file would; a word needs no quotes."""
+    name, equals, text = change.partition("=")
+    section, dot, key = name.strip().partition(".")
+    if not (equals and dot):
+        raise BadInputError(
+            f"--set {one_line(change, 60)}: write section.key=value{_did_you_mean(name)}"
+        )
+    value: Any = text
+    if text.isprintable():
+        try:
+            value = _toml(f"value = {text}", "--set")["value"]
+        except BadInputError:  # a word without quotes, or a mistake that the check will name
+            value = text.strip()
+    return {section: {key: value}}
+
+
+def _toml_file(path: Path, source: str) -> dict[str, Any]:
+    """Return what a TOML file holds; BadInputError, quoting `source`, when it cannot be read."""
+    try:
+        with path.open("rb") as file:
+            data = file.read(LARGEST_FILE + 1)
+    except OSError as error:
+        raise BadInputError(
+            f"{source}: {error.strerror}; give a TOML file that can be read"
+        ) from error
+    if len(data) > LARGEST_FILE:
+        raise BadInputError(
+            f"{source}: more than {LARGEST_FILE} bytes; give a TOML file of settings"
+        )
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise BadInputError(f"{source}: not TOML, which is UTF-8; save it as UTF-8") from error
+    if "\0" in text:
+        raise BadInputError(f"{source}: not TOML, there is a NUL in it; save it as UTF-8")
+    return _toml(text, source)
+
+
+def _toml(text: str, source: str) -> dict[str, Any]:
+    """Return what TOML text holds; BadInputError, quoting `source`, when it is none.
+
+    The depth is looked at first: tomllib takes memory as the square of the dots in one key.
+    """
+    plain = _TEXT_OR_REMARK.sub("_", text)
+    steps = (1 if bracket in "[{" else -1 for bracket in re.findall(r"[\[{\]}]", plain))
+    if max(accumulate(steps), default=0) > DEEPEST or _LONG_KEY.search(plain):
+        raise BadInputError(
+            f"{source}: not TOML of settings: more than {DEEPEST} dots in a key or lists in one "
+            "another; write [section] and key = value"
+        )
+    try:
+        return tomllib.loads(text)
+    except ValueError as error:
+        raise BadInputError(f"{source}: not TOML: {one_line(error)}") from error

@@ -10,12 +10,18 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
-from affcli.config import Settings, load_settings, settings_from_json, settings_with
+from affcli.config import (
+    Settings,
+    known_settings,
+    load_settings,
+    settings_from_json,
+    settings_with,
+)
 from affcli.core.observation import SENSOR_KINDS
 from affcli.errors import BadInputError
 
 DEFAULTS: dict[str, dict[str, Any]] = json.loads(Settings().to_json())
-SECTIONS = {
+NAMES = {
     *("arm", "tools", "puck", "friction", "layout", "motion", "table"),
     *("sensor", "camera", "physics", "babbling", "trial"),
 }
@@ -67,7 +73,7 @@ def test_an_empty_file_changes_nothing(tmp_path: Path) -> None:
 
 
 def test_the_sections_are_those_of_the_geometry_and_the_five_beside_it() -> None:
-    assert set(DEFAULTS) == SECTIONS
+    assert set(DEFAULTS) == NAMES
 
 
 def test_every_key_can_be_overridden_and_nothing_else_changes(tmp_path: Path) -> None:
@@ -190,7 +196,7 @@ def test_what_does_not_exist_is_refused_by_its_path(tmp_path: Path, text: str, n
 
 def test_an_unknown_section_or_key_is_told_with_those_there_are(tmp_path: Path) -> None:
     sections = refused(tmp_path, "[grip]\n")
-    assert all(section in sections for section in SECTIONS)
+    assert all(section in sections for section in NAMES)
     known = refused(tmp_path, "[trial]\nsteps = 5\n")
     assert "max_steps" in known
 
@@ -367,12 +373,59 @@ def test_any_value_is_either_taken_as_it_is_or_refused(key: tuple[str, str], val
 
 
 @hypothesis_settings(deadline=None)
-@given(st.dictionaries(st.text(max_size=8) | st.sampled_from(sorted(SECTIONS)), json_values))
+@given(st.dictionaries(st.text(max_size=8) | st.sampled_from(sorted(NAMES)), json_values))
 def test_any_mapping_is_either_taken_or_refused(mapping: dict[str, Any]) -> None:
     given_back = outcome(mapping)
     assert isinstance(given_back, Settings) or str(given_back).startswith("a test: ")
 
 
-def test_stored_settings_that_this_version_does_not_know_are_refused() -> None:
-    with pytest.raises(BadInputError, match="the stored settings: no section wings"):
-        settings_from_json('{"wings":{"span":3.0}}')
+def test_each_setting_says_what_it_is_and_its_default_is_possible() -> None:
+    assert set(known_settings()) == {f"{section}.{key}" for section, key in KEYS}
+    for name, one in known_settings().items():
+        assert one.meaning.endswith("."), name
+        assert not one.refusal(one.default), name
+
+
+def test_a_byte_order_mark_is_read_over(tmp_path: Path) -> None:
+    path = tmp_path / "settings.toml"
+    path.write_bytes(b"\xef\xbb\xbf[trial]\nmax_steps = 5\n")
+    assert load_settings(path).trial.max_steps == 5
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-32", "latin-1"])
+def test_other_encodings_are_told_what_to_do(tmp_path: Path, encoding: str) -> None:
+    path = tmp_path / "settings.toml"
+    path.write_bytes("# h\xf6her\n[trial]\nmax_steps = 5\n".encode(encoding))
+    with pytest.raises(BadInputError, match="save it as UTF-8"):
+        load_settings(path)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("arm" + ".a" * 90_000 + " = 1", "[arm" + " . a" * 90_000 + "]"),
+        *("a" + ' . "b.c"' * 5 + " = 1", "x = {" + "a.a.a.a.a.a = 1}"),
+        *("#\na.a.a.a.a.a = 1", '"#" = 1\na.a.a.a.a.a = 1', "'''\n''' = 1\na.a.a.a.a.a = 1"),
+        "x = " + "[" * 5 + "]" * 5,
+    ],
+)
+def test_depth_is_refused_before_it_takes_memory(tmp_path: Path, text: str) -> None:
+    assert "more than 4 dots in a key or lists in one another" in refused(tmp_path, text)
+
+
+def test_dots_in_words_and_remarks_are_no_depth(tmp_path: Path) -> None:
+    text = (
+        "# a.b.c.d.e.f.g, [[[[[[[\n[sensor]\n"
+        "kind = 'exact' # see www.a.b.c.d.e.f\nposition_noise = 0.5\n"
+    )
+    assert load_settings(written(tmp_path, text)).sensor.position_noise == 0.5
+    assert "a.b.c.d.e.f" in refused(tmp_path, '["a.b.c.d.e.f.g"]\nx = 1')
+    assert "kind = [[[[[[[ must" in refused(tmp_path, 'sensor.kind = """[[[[[[["""')
+
+
+@pytest.mark.parametrize(
+    "text", [". " * 400_000, "." + " " * 900_000, "a" * 900_000, '"' * 900_001]
+)
+def test_looking_at_the_depth_takes_time_in_proportion(tmp_path: Path, text: str) -> None:
+    """Each of these would take minutes otherwise."""
+    refused(tmp_path, text)

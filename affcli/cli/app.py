@@ -14,6 +14,7 @@ from affcli.cli import (
     replay,
     report,
     reproduce,
+    settings,
     solve,
     sql,
     table,
@@ -36,6 +37,7 @@ app.command("predict")(predict.predict)
 app.command("report")(report.report)
 app.command("replay")(replay.replay)
 app.command("reproduce")(reproduce.reproduce)
+app.command("settings")(settings.settings)
 app.command("sql")(sql.sql)
 app.command("doctor")(doctor.doctor)
 app.add_typer(camera.app, name="camera")

@@ -7,6 +7,7 @@ import typer
 from affcli.cli.options import (
     DEFAULT_DATABASE,
     AsJson,
+    Changes,
     Config,
     Database,
     Resume,
@@ -47,6 +48,7 @@ def learn(
     resume: Resume = False,
     database: Database = DEFAULT_DATABASE,
     config: Config = None,
+    changes: Changes = None,
     as_json: AsJson = False,
 ) -> None:
     """Let a robot babble with a tool and fill its affordance table.
@@ -59,7 +61,8 @@ def learn(
     names = list(TOOL_PARTS) if all_tools else checked_tools(tool or ())
     if not names and not resume:
         raise UsageError(f"which tool? give --tool {'|'.join(TOOL_PARTS)}, or --all-tools")
-    if not names and (hours, behaviors, seed, sensor, config) != (None, None, 0, None, None):
+    own = (hours, behaviors, seed, sensor, config, changes)
+    if not names and own != (None, None, 0, None, None, None):
         raise UsageError("--resume alone: an interrupted run has its own hours, seed and settings")
     if hours is not None and behaviors is not None:
         raise UsageError("give --hours or --behaviors, not both")
@@ -76,7 +79,7 @@ def learn(
     from affcli.report.learning import groups_json, groups_table, run_json
     from affcli.store import open_store
 
-    settings = with_sensor(load_settings(config), kind)
+    settings = with_sensor(load_settings(config, changes or ()), kind)
     require_sensor(settings)
     text = settings.to_json()
     specs = [LearningSpec(name, seed, 0, hours, behaviors, text) for name in names]

@@ -37,6 +37,12 @@ Config = Annotated[
         "--config", help="A TOML file of settings that differ.", metavar="FILE", readable=False
     ),
 ]
+Changes = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set", help="One setting; several times for several.", metavar="SECTION.KEY=VALUE"
+    ),
+]
 Force = Annotated[bool, typer.Option("--force", help="Write over existing files.")]
 Resume = Annotated[
     bool,

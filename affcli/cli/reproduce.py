@@ -9,6 +9,7 @@ from affcli.cli.options import (
     DEFAULT_DATABASE,
     MOST_WORKERS,
     AsJson,
+    Changes,
     Config,
     Database,
     Resume,
@@ -38,6 +39,7 @@ def reproduce(
     ] = None,
     database: Database = DEFAULT_DATABASE,
     config: Config = None,
+    changes: Changes = None,
     as_json: AsJson = False,
 ) -> None:
     """Let many robots learn the five tools and do the paper's 80 + 16 trials; compare.
@@ -45,7 +47,7 @@ def reproduce(
     The result is the same for any number of workers. An interrupted reproduction goes on when the
     same command is given again, as does the latest one with --resume alone.
     """
-    own = (robots, seed, sensor, config) != (None, 0, None, None)
+    own = (robots, seed, sensor, config, changes) != (None, 0, None, None, None)
     if robots is None:
         robots = FEW_ROBOTS
     checked_count("--robots", robots, MOST_ROBOTS)
@@ -62,7 +64,7 @@ def reproduce(
     from affcli.report.reproduction import reproduction_json, reproduction_tables
     from affcli.store import open_store
 
-    settings = with_sensor(load_settings(config), kind)
+    settings = with_sensor(load_settings(config, changes or ()), kind)
     require_sensor(settings)
     with open_store(database, create=True, write=True) as store:
         if resume and not own:

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from affcli.core.setting import setting
+
 
 @dataclass(frozen=True, slots=True)
 class BabblingSettings:
@@ -11,9 +13,11 @@ class BabblingSettings:
     touch. Inches, in the wrist's frame.
     """
 
-    offset_x_max: float = 7.5
-    """|x| of position wrist is at most this."""
-    offset_y_min: float = 6.8
-    offset_y_max: float = 19.2
-    draws: int = 256
-    """After this many wrist positions in vain the attractor is put back, as if out of reach."""
+    offset_x_max: float = setting(7.5, "in", "|x| of position wrist is at most this.")
+    offset_y_min: float = setting(6.8, "in", "y of position wrist is at least this.")
+    offset_y_max: float = setting(19.2, "in", "y of position wrist is at most this.")
+    draws: int = setting(
+        256,
+        "",
+        "After this many wrist positions in vain the attractor is put back, as if out of reach.",
+    )

@@ -5,8 +5,8 @@ from typing import Any, NamedTuple
 
 from affcli.core.affordance import Affordance
 from affcli.core.observation import Observation
-from affcli.core.scene import Scene
 from affcli.core.ports import Goal
+from affcli.core.scene import Scene
 from affcli.core.specs import TrialSpec
 from affcli.core.trial import BabblingRecord, TrialEnd, TrialStep, Truth
 from affcli.core.workspace import Workspace

@@ -33,14 +33,14 @@ def reproduction_of(store: Store, session: int, robots: int) -> Reproduction:
     failures, trials = _failures(store, [session])
     lost = sum(use.tries for use in store.row_uses(session) if use.lost)
     (info,) = (s for s in store.sessions("reproduce") if s.id == session)
-    words = differences(settings_from_json(info.settings).to_json())
+    words = differences(settings_from_json(info.settings))
     return Reproduction(robots, cells, broken, failures, trials, lost, session, info.seed, words)
 
 
 def overview_of(store: Store) -> Overview:
     """Return what the database holds: learned tools, trials, finished reproductions."""
     learned = [
-        (run, differences(run.spec.settings), store.behavior_groups(run.id))
+        (run, differences(settings_from_json(run.spec.settings)), store.behavior_groups(run.id))
         for run in store.learning_runs()
     ]
     solved: dict[tuple[int, str, str, int], tuple[int, int]] = {}

@@ -181,6 +181,6 @@ def _learned(store: Store, run: LearningRunInfo) -> LearnedRows:
         behaviors=run.behaviors,
         resets=run.resets,
         robot_seconds=run.robot_seconds,
-        settings=differences(run.spec.settings),
+        settings=differences(settings),
         rows=rows,
     )

@@ -23,9 +23,9 @@ from affcli.simulation.table import Table
 from affcli.simulation.tasks.extension_of_reach import goal_regions, start_positions
 
 if TYPE_CHECKING:
+    from affcli.perception.camera_sensor import Eye
     from affcli.perception.rendering import Picture
     from affcli.perception.segmentation import Segmentation
-    from affcli.perception.camera_sensor import Eye
 
 SHOWN = "t-hook"
 """The tool in a picture that is of no run."""

@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from affcli.core.setting import LARGEST, setting
 from affcli.perception.camera import Camera, ImageSensor, looking
 
 
@@ -14,25 +15,48 @@ class CameraSettings:
     lies before it, and so high that it sees the whole table and a push of 5 in beyond.
     """
 
-    focal_length_mm: float = 5.29
-    """With a sensor 4.8 mm wide the horizontal view is 48.8 degrees, that of the paper's camera."""
-    distortion_per_mm2: float = 0.004
-    """kappa_1 of Tsai's model. Choice: 3.6 % at the corner, a wide lens's barrel."""
-    x: float = 0.0
-    """Where it stands (in, table frame)."""
-    y: float = 45.0
-    height: float = 52.0
-    """Of its centre over the table (in)."""
-    tilt_degrees: float = 25.0
-    """Between the optical axis and straight down."""
-    turn_degrees: float = 180.0
-    """Where it looks: 0 away from the robot, 90 to the robot's left, 180 at the robot."""
-    grey_noise: float = 2.55
-    """Standard deviation of each colour component of each pixel: 1 % of 255."""
-    blur_px: float = 0.5
-    """Standard deviation of the blur."""
-    uneven_light: float = 0.1
-    """The light differs from its mean by at most this share, at a corner of the picture."""
+    focal_length_mm: float = setting(
+        5.29,
+        "mm",
+        "With a sensor 4.8 mm wide the horizontal view is 48.8 degrees, that of the paper's "
+        "camera.",
+        high=100.0,
+    )
+    distortion_per_mm2: float = setting(
+        0.004,
+        "1/mm^2",
+        "kappa_1 of Tsai's model. Choice: 3.6 % at the corner, a wide lens's barrel.",
+        low=-0.05,
+        high=0.05,
+    )
+    x: float = setting(0.0, "in", "x of where it stands.", low=-LARGEST)
+    y: float = setting(45.0, "in", "y of where it stands.", low=-LARGEST)
+    height: float = setting(52.0, "in", "Height of its centre over the table.", high=1000.0)
+    tilt_degrees: float = setting(
+        25.0, "degrees", "Between the optical axis and straight down.", low=0.0, high=89.0
+    )
+    turn_degrees: float = setting(
+        180.0,
+        "degrees",
+        "Where it looks: 0 away from the robot, 90 to the robot's left, 180 at the robot.",
+        low=0.0,
+        high=360.0,
+    )
+    grey_noise: float = setting(
+        2.55,
+        "of 255",
+        "Standard deviation of each colour component of each pixel: 1 % of 255.",
+        low=0.0,
+        high=255.0,
+    )
+    blur_px: float = setting(0.5, "px", "Standard deviation of the blur.", low=0.0, high=20.0)
+    uneven_light: float = setting(
+        0.1,
+        "",
+        "The light differs from its mean by at most this share, at a corner of the picture.",
+        low=0.0,
+        high=0.9,
+    )
 
     def camera(self) -> Camera:
         """Return the camera as it truly is; the robot has to calibrate to know it."""

@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from affcli.core.geometry import Point
-from affcli.core.observation import Observation, SensorKind
+from affcli.core.observation import SENSOR_KINDS, Observation, SensorKind
 from affcli.core.scene import Scene
+from affcli.core.setting import setting
 from affcli.core.task import GoalRegion
 
 
@@ -15,12 +16,27 @@ from affcli.core.task import GoalRegion
 class SensorSettings:
     """Which sensor; and the standard deviations of the noisy one's Gaussian noise."""
 
-    kind: SensorKind = "noisy"
-    position_noise: float = 0.008
-    """On x and y of attractor, wrist and goal, each drawn by itself (in): the camera's own error
-    (``experiments/camera``)."""
-    color_noise: float = 2.4
-    """On each colour component (0 to 255), likewise."""
+    kind: SensorKind = setting(
+        "noisy",
+        "",
+        "Through what the robot sees: true positions with noise, without, or pictures.",
+        choices=SENSOR_KINDS,
+    )
+    position_noise: float = setting(
+        0.008,
+        "in",
+        "Standard deviation of x and y of attractor, wrist and goal, each drawn by itself: the "
+        "camera's own error (experiments/camera).",
+        low=0.0,
+        high=10.0,
+    )
+    color_noise: float = setting(
+        2.4,
+        "of 255",
+        "Standard deviation of each colour component, each drawn by itself.",
+        low=0.0,
+        high=255.0,
+    )
 
 
 class NoisySensor:

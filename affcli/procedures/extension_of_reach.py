@@ -8,6 +8,7 @@ from affcli.core.behavior import BehaviorCall
 from affcli.core.choice import Situation
 from affcli.core.observation import Observation
 from affcli.core.ports import Experimenter, Goal, Planner, Robot, Sensor
+from affcli.core.setting import setting
 from affcli.core.trial import Outcome, StepRecord, TrialEnd
 from affcli.errors import SimulationDivergedError
 from affcli.procedures.attempt import attempt
@@ -17,8 +18,11 @@ from affcli.procedures.attempt import attempt
 class TrialLimits:
     """When a trial is given up."""
 
-    max_steps: int = 60
-    """Steps after which the experimenter ends the trial; the paper names no limit."""
+    max_steps: int = setting(
+        60,
+        "",
+        "Steps after which the experimenter ends the trial; the paper names no limit.",
+    )
 
 
 def extension_of_reach(

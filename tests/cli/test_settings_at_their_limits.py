@@ -1,23 +1,14 @@
 """Settings that are taken, at both ends of what they may be: the physics engine survives them."""
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from affcli.config import (
-    AT_LEAST,
-    AT_MOST,
-    LARGEST,
-    MAY_BE_NEGATIVE,
-    MAY_BE_ZERO,
-    SMALLEST,
-    Settings,
-)
+from affcli.config import known_settings
+from affcli.core.setting import LARGEST, SMALLEST
 from tests.cli.program import affcli, one_printable_line, rows
 
-DEFAULTS = json.loads(Settings().to_json())
 SLOW = {("motion.push_speed", SMALLEST), ("physics.iterations", LARGEST)}
 """What takes as long as it says: a push of two inches in half an hour of small steps, and a million
 sweeps in each of them."""
@@ -25,22 +16,12 @@ ENGINE = ("puck.", "friction.", "physics.", "tools.part_width", "tools.handle_be
 """What goes into the engine."""
 
 
-def limits(path: str, default: float) -> tuple[float, float]:
-    """Return the least and the largest value that a setting may have."""
-    whole = isinstance(default, int)
-    low = 0.0 if path in MAY_BE_ZERO else AT_LEAST.get(path, 1 if whole else SMALLEST)
-    low = -LARGEST if path in MAY_BE_NEGATIVE else low
-    high = AT_MOST.get(path, LARGEST)
-    return (int(low), int(high)) if whole else (float(low), float(high))
-
-
 EXTREMES = [
-    (f"{section}.{key}", value)
-    for section, values in DEFAULTS.items()
-    for key, default in values.items()
-    if not isinstance(default, str)
-    for value in limits(f"{section}.{key}", default)
-    if (f"{section}.{key}", value) not in SLOW
+    (name, type(one.default)(value))
+    for name, one in known_settings().items()
+    if not one.choices
+    for value in (one.low, one.high)
+    if (name, value) not in SLOW
 ]
 
 

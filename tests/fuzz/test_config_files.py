@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 from hypothesis import strategies as st
 
-from affcli.config import CHOICES, Settings
+from affcli.config import Settings
+from affcli.core.observation import SENSOR_KINDS
 from tests.fuzz.conftest import Fuzz
 from tests.fuzz.running import Program, check_ending, is_sound
 
@@ -49,7 +50,7 @@ def near_defaults(draw: st.DrawFn) -> str:
     for section, key in draw(st.lists(st.sampled_from(KEYS), min_size=1, max_size=6, unique=True)):
         usual = DEFAULTS[section][key]
         if isinstance(usual, str):
-            value = json.dumps(draw(st.sampled_from(CHOICES[f"{section}.{key}"])))
+            value = json.dumps(draw(st.sampled_from(SENSOR_KINDS)))
         else:
             factor = draw(
                 st.floats(0.5, 2.0)

@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from affcli.config import Settings
+from affcli.config import Settings, settings_from
 from affcli.core.behavior import EXTEND_ARM, BehaviorCall
 from affcli.core.geometry import Point, Pose
 from affcli.core.tool import TOOL_PARTS
+from affcli.errors import DatabaseError
 from affcli.lab.bench import LEARNING, Bench, missing_side, stable_number, tool_named
 from affcli.simulation.world import World
 from tests.factories import bench_with, goal_at
@@ -125,3 +126,10 @@ def test_the_number_of_a_name_is_the_same_everywhere_and_always() -> None:
     assert numbers == {"stick": 2404638097, "t-hook": 1015380742, "": 3820012610}
     assert all(0 <= stable_number(name) < 2**32 for name in TOOL_PARTS)
     assert len({stable_number(name) for name in TOOL_PARTS}) == len(TOOL_PARTS)
+
+
+def test_nothing_runs_with_a_setting_that_this_version_does_not_know() -> None:
+    later = settings_from({"wings.span": 3.0})
+    world = World(later.workspace, later.physics)
+    with pytest.raises(DatabaseError, match=r"with wings\.span = 3; install the affcli that wrote"):
+        Bench.of(later, world, LEARNING, 0, 0)
