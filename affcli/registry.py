@@ -90,7 +90,10 @@ def component(kind: Kind, text: str) -> Component:
 
 def binding(text: str, geometry: "ToolGeometry") -> BehaviorCall:
     """Return the binding behavior that a text names, for tools of these sizes."""
-    return _built("bindings", component("bindings", text))(geometry)  # type: ignore[no-any-return]
+    given = Component.parse(text)
+    chosen = part("bindings", given.name)
+    # All that is given is handed on: what is left out, the sizes decide.
+    return chosen.build(geometry, **chosen.checked(dict(given.params)))  # type: ignore[no-any-return]
 
 
 def repertoire(texts: Sequence[str]) -> Repertoire:

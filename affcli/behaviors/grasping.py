@@ -3,7 +3,8 @@
 import math
 
 from affcli.core.behavior import GRASP, BehaviorCall
-from affcli.core.part import Param, Part
+from affcli.core.part import Part
+from affcli.core.setting import Setting
 from affcli.core.tool import Hold
 from affcli.core.workspace import ToolGeometry
 
@@ -34,12 +35,13 @@ PARTS = (
         summary="the hand takes the handle at a point, the tool straight ahead or turned",
         source="Stoytchev 2008, §5.1",
         build=grasp,
-        params=(
-            Param(
-                *("grasp_point", None, "in", 0.0, 14.0),
-                "along the handle from its lower end; the paper's if not given",
+        params={
+            "grasp_point": Setting(
+                *(1.0, "in"),
+                "Along the handle from its lower end; as tools.handle_below_grasp if not given.",
+                *(0.0, 100.0),
             ),
-            Param("angle", 0.0, "degrees", -180.0, 180.0, "the tool turned in the hand"),
-        ),
+            "angle": Setting(0.0, "degrees", "The tool turned in the hand.", -180.0, 180.0),
+        },
     ),
 )

@@ -4,7 +4,8 @@ from functools import partial
 
 from affcli.behaviors.motor_schemas import move_straight
 from affcli.core.behavior import BehaviorCall, BehaviorName, ExploratoryBehavior, Repertoire
-from affcli.core.part import Param, Part
+from affcli.core.part import Part
+from affcli.core.setting import Setting
 
 EXTEND_ARM = BehaviorName("extend arm")
 CONTRACT_ARM = BehaviorName("contract arm")
@@ -61,7 +62,7 @@ PARTS = (
             summary=f"{name}: the wrist slides in one direction of the table",
             source="Stoytchev 2008, §5",
             build=partial(moving, name),
-            params=(Param("offset_distance", 5.0, "in", 0.1, 20.0, "how far the arm travels"),),
+            params={"offset_distance": Setting(5.0, "in", "How far the arm travels.", 0.1, 20.0)},
         )
         for name in DIRECTIONS
     ),

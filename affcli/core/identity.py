@@ -12,10 +12,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from affcli.core.setting import Value
 from affcli.errors import BadInputError, one_line
-
-Value = str | float
-"""A parameter's value: a number or a word."""
 
 LONGEST_TEXT = 2_000
 """Letters of a part written as text; the longest that affcli writes has some 100."""
@@ -47,7 +45,7 @@ class Component:
     def parse(cls, text: str) -> "Component":
         """Return the component that ``name:key=value,key=value`` stands for.
 
-        A version other than 1 follows the name: ``name@2:key=value``. Numbers become floats.
+        A version other than 1 follows the name: ``name@2:key=value``.
 
         Raises:
             BadInputError: the text is not of this form.
@@ -82,7 +80,7 @@ def shown(value: Value) -> str:
     if isinstance(value, str):
         return value
     short = f"{value:g}"
-    return short if float(short) == value else repr(float(value))
+    return short if float(short) == value else repr(value)
 
 
 def canonical_json(value: Any) -> str:
@@ -105,6 +103,8 @@ def stream_number(name: str) -> int:
 
 def _value(text: str) -> Value:
     """Return a number where the text is one, else the text."""
+    if text.isdecimal() and text.isascii():
+        return int(text)
     try:
         return float(text)
     except ValueError:

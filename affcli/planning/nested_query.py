@@ -14,8 +14,9 @@ from affcli.core.affordance_table import AffordanceTable, Rows
 from affcli.core.choice import Candidate, Choice, Reaches, Reason, Reasons, Situation
 from affcli.core.geometry import Pose
 from affcli.core.observation import Observation
-from affcli.core.part import Param, Part
+from affcli.core.part import Part
 from affcli.core.ports import Goal
+from affcli.core.setting import Setting
 from affcli.planning.selection import blocks, of, smallest, those
 
 TOP_SHARE = 0.2
@@ -144,18 +145,20 @@ PARTS = (
         "re-positioning",
         source="Stoytchev 2008, §6.2",
         build=NestedQuery,
-        params=(
-            Param(
-                "share", TOP_SHARE, "", 0.001, 1.0, "of the sorted rows that search 4 chooses from"
+        params={
+            "share": Setting(
+                TOP_SHARE, "", "Of the sorted rows that search 4 chooses from.", 0.001, 1.0
             ),
-            Param(
-                *("threshold", PROBABILITY_THRESHOLD, "", 0.0, 0.999),
-                "search 2 keeps rows with a replication probability greater than this",
+            "threshold": Setting(
+                *(PROBABILITY_THRESHOLD, ""),
+                "Search 2 keeps rows with a replication probability greater than this.",
+                *(0.0, 0.999),
             ),
-            Param(
-                *("angle_degrees", REPLICATION_ANGLE_DEGREES, "degrees", 1.0, 180.0),
-                "a use replicates when the movement seen is within this angle of the row's",
+            "angle_degrees": Setting(
+                *(REPLICATION_ANGLE_DEGREES, "degrees"),
+                "A use replicates when the movement seen is within this angle of the row's.",
+                *(1.0, 180.0),
             ),
-        ),
+        },
     ),
 )
