@@ -7,8 +7,8 @@ from affcli.core.affordance import Affordance
 from affcli.core.behavior import BehaviorCall
 from affcli.core.choice import Reasons
 from affcli.core.geometry import Point, Pose
-from affcli.core.identity import Value
 from affcli.core.observation import Movement
+from affcli.core.setting import Value
 from affcli.core.specs import LearningSpec, SessionSpec, TrialSpec
 from affcli.core.task import GoalRegion
 from affcli.core.tool import Tool

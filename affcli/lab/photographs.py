@@ -8,7 +8,7 @@ from affcli.config import load_colors
 from affcli.core.geometry import Point
 from affcli.core.tool import Color
 from affcli.errors import BadInputError, one_line
-from affcli.lab.sensing import require_camera
+from affcli.simulation.sensing import require_camera
 
 if TYPE_CHECKING:
     from affcli.perception.calibration import Calibration

@@ -12,7 +12,7 @@ from affcli.core.observation import SensorKind
 from affcli.core.part import Part
 from affcli.core.ports import Sensor
 from affcli.core.scene import Scene
-from affcli.core.tool import Tool
+from affcli.core.tool import Color, Tool
 from affcli.core.workspace import Workspace
 from affcli.errors import UsageError
 from affcli.perception.camera_settings import CameraSettings
@@ -87,7 +87,9 @@ def eye_of(
 ) -> "Eye":
     """Return a robot's camera after power-up: a function of its arguments alone."""
     require_camera()
-    colors = {known.name: known.color for known in paper_tools(workspace.tools).values()}
+    colors: dict[str, Color] = {
+        known.name: known.color for known in paper_tools(workspace.tools).values()
+    }
     colors.setdefault(tool.name, tool.color)
     return _eye(camera, workspace, tuple(colors.items()), seed, robot)
 
@@ -109,7 +111,7 @@ def require_camera() -> None:
 def _eye(
     settings: CameraSettings,
     workspace: Workspace,
-    tools: tuple[tuple[str, tuple[float, ...]], ...],
+    tools: tuple[tuple[str, Color], ...],
     seed: int,
     robot: int,
 ) -> "Eye":
