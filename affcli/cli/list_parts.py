@@ -1,0 +1,31 @@
+"""``affcli list``: the parts that a run can be made of, by name."""
+
+from typing import Annotated
+
+import typer
+
+from affcli import registry
+from affcli.cli.options import AsJson, one_of
+from affcli.cli.terminal import show_either
+from affcli.report.parts import parts_json, parts_tables
+
+
+def list_parts(
+    kind: Annotated[
+        str | None, typer.Argument(help=f"{', '.join(registry.KINDS)}.", metavar="KIND")
+    ] = None,
+    *,
+    as_json: AsJson = False,
+) -> None:
+    """List the parts that a run can be made of: what each is, its parameters, its source.
+
+    An option takes a part as name or name:key=value,key=value, as in --planner
+    nested-query:share=0.05.
+    """
+    wanted = registry.KINDS if kind is None else [one_of("kind of part", kind, registry.KINDS)]
+    found = {one: registry.parts(one) for one in registry.KINDS if one in wanted}
+    show_either(
+        as_json=as_json,
+        value=lambda: parts_json(found),
+        tables=lambda: list(parts_tables(found)),
+    )

@@ -1,0 +1,54 @@
+"""The parts of the registry as tables and as JSON types (``affcli list``)."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from affcli.core.identity import shown
+from affcli.core.part import Part
+from affcli.report.sheet import Sheet
+
+Registered = Mapping[str, Mapping[str, Part]]
+"""Parts by name, by kind."""
+
+
+def parts_tables(registered: Registered) -> Iterator[Sheet]:
+    """Yield for each kind a table of its parts, and one of their parameters if they have any."""
+    for kind, parts in registered.items():
+        known = Sheet((kind, "what it is", "source"), left=(kind, "what it is", "source"))
+        for name, part in parts.items():
+            known.add(name, part.summary, part.source)
+        yield known
+        left = ("parameter of", "name", "unit", "limits", "meaning")
+        params = Sheet((*left[:2], "default", *left[2:]), left=left)
+        for name, part in parts.items():
+            for key, one in part.params.items():
+                params.add(name, key, shown(one.default), one.unit, one.limits, one.meaning)
+        if any(part.params for part in parts.values()):
+            yield params
+
+
+def parts_json(registered: Registered) -> dict[str, list[dict[str, Any]]]:
+    """Return the same as JSON types."""
+    return {
+        kind: [
+            {
+                "name": part.name,
+                "version": part.version,
+                "summary": part.summary,
+                "source": part.source,
+                "parameters": [
+                    {
+                        "name": key,
+                        "default": one.default,
+                        "unit": one.unit or None,
+                        "low": one.low,
+                        "high": one.high,
+                        "meaning": one.meaning,
+                    }
+                    for key, one in part.params.items()
+                ],
+            }
+            for part in parts.values()
+        ]
+        for kind, parts in registered.items()
+    }
