@@ -1,21 +1,25 @@
-"""Public names of a package, each imported when it is first used."""
+"""Modules of a package, each imported when it is first used."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection
 from importlib import import_module
+from types import ModuleType
 
 
-def lazy_names(package: str, homes: Mapping[str, str]) -> Callable[[str], object]:
-    """Return a module's ``__getattr__`` that imports a name from its home when it is first used.
+def lazy_modules(package: str, names: Collection[str]) -> Callable[[str], ModuleType]:
+    """Return a package's ``__getattr__``, which imports a module of it when it is first used.
+
+    So who uses the package imports it at the top, and waits for a library, or has it at all, only
+    where it is needed.
 
     Args:
-        package: the package that offers the names.
-        homes: the module of the package that each name lives in.
+        package: the name of the package.
+        names: its modules that are found so.
     """
 
-    def get(name: str) -> object:
-        """Return the name's value; AttributeError when the package has no such name."""
-        if name not in homes:
+    def module(name: str) -> ModuleType:
+        """Return a module of the package; AttributeError when it has none of this name."""
+        if name not in names:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
-        return getattr(import_module(f"{package}.{homes[name]}"), name)
+        return import_module(f"{package}.{name}")
 
-    return get
+    return module

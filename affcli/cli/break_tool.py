@@ -1,5 +1,6 @@
 """``affcli break-tool``: the tool breaks, the robot is not told, and adapts (§7.2)."""
 
+from affcli import lab
 from affcli.cli.database import learned_runs, opened, say_trials
 from affcli.cli.options import (
     DEFAULT_BROKEN,
@@ -15,8 +16,6 @@ from affcli.cli.options import (
 from affcli.cli.terminal import now, progress, show_either
 from affcli.config import settings_from_json
 from affcli.errors import UsageError
-from affcli.lab.bench import missing_side
-from affcli.lab.breaking import break_tool as break_trials
 from affcli.report.breaking import broken_json, broken_tables
 
 
@@ -40,11 +39,11 @@ def break_tool(
         (run,) = learned_runs(store, tool, database)
         with progress(f"{tool} becomes {becomes}", 32) as bar:
             numbers, trials = [], []
-            for number, trial in break_trials(store, run, becomes, seed, now, sensor):
+            for number, trial in lab.breaking.break_tool(store, run, becomes, seed, now, sensor):
                 numbers.append(number)
                 trials.append(trial)
                 bar.update(len(trials), f"{len(trials)} of 32 trials")
-    side = missing_side(settings_from_json(run.spec.settings), tool, becomes)
+    side = lab.bench.missing_side(settings_from_json(run.spec.settings), tool, becomes)
     show_either(
         as_json=as_json,
         value=lambda: {"run": run.id, "trials": numbers, **broken_json(becomes, side, trials)},

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from affcli import lab
 from affcli.cli.files import require_new, save
 from affcli.cli.options import (
     AsJson,
@@ -21,8 +22,6 @@ from affcli.config import load_settings
 from affcli.core.geometry import Point
 from affcli.core.tool import Color
 from affcli.errors import BadInputError, UsageError, one_line
-from affcli.lab.photographs import calibrate_picture, pattern_of
-from affcli.lab.sensing import eye_of, require_camera
 from affcli.report.camera import calibration_tables
 
 TURNS = (0, 90, 180, 270)
@@ -100,12 +99,12 @@ def calibrate(
     if out is not None:
         require_new(out, force=force)
 
-    require_camera()
+    lab.sensing.require_camera()
     if image is None:
-        found = eye_of(load_settings(config), seed, 0).calibration
+        found = lab.sensing.eye_of(load_settings(config), seed, 0).calibration
     else:
-        pattern = pattern_of(columns, rows, spacing, first, turn)
-        found = calibrate_picture(image, pattern, color, sensor_width)
+        pattern = lab.photographs.pattern_of(columns, rows, spacing, first, turn)
+        found = lab.photographs.calibrate_picture(image, pattern, color, sensor_width)
     values = found.as_json()
     if out is not None:
         save(out, (json.dumps(values, indent=2) + "\n").encode())

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from affcli import lab
 from affcli.cli.database import opened
 from affcli.cli.files import require_new, save
 from affcli.cli.options import (
@@ -19,8 +20,6 @@ from affcli.cli.options import (
 from affcli.cli.terminal import say
 from affcli.config import load_settings
 from affcli.errors import UsageError, one_line
-from affcli.lab.sensing import require_camera
-from affcli.lab.viewing import film_of_step, view_of_pattern, view_of_step, view_of_table
 
 if TYPE_CHECKING:
     from affcli.store import StepScene
@@ -79,16 +78,20 @@ def view(
     )
     _check_where(out, video, force=force)
 
-    require_camera()
+    lab.sensing.require_camera()
     settings = load_settings(config)
     scene = _stored_scene(database, trial, run, step)
     if scene is not None:
-        shown = view_of_step(scene, after=after)
+        shown = lab.viewing.view_of_step(scene, after=after)
         if video is not None:
-            save(video, film_of_step(scene, video.suffix.lower(), frame_alone=frame))
+            save(video, lab.viewing.film_of_step(scene, video.suffix.lower(), frame_alone=frame))
             say(f"{scene.title}, {scene.call}: {one_line(video)}")
     else:
-        shown = view_of_pattern(settings, seed) if pattern else view_of_table(settings, seed)
+        shown = (
+            lab.viewing.view_of_pattern(settings, seed)
+            if pattern
+            else lab.viewing.view_of_table(settings, seed)
+        )
     if out is not None:
         save(out, shown.png(frame_alone=frame))
         say(f"{shown.title}: {one_line(out)}")

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from affcli import lab
 from affcli.cli.database import learned_runs, opened
 from affcli.cli.files import require_new, save
 from affcli.cli.options import (
@@ -30,14 +31,7 @@ from affcli.cli.terminal import say
 from affcli.config import load_settings
 from affcli.core.tool import ToolName, paper_tools
 from affcli.errors import UsageError, one_line
-from affcli.lab.affordance_views import (
-    row_shown,
-    table_of_run,
-    tables_around_trial,
-    tables_compared,
-)
 from affcli.lab.drawing import require_figures
-from affcli.lab.learning_curves import curves_of, curves_of_robots
 from affcli.report import figures
 from affcli.simulation.arm import reach_at
 
@@ -102,15 +96,17 @@ def affordances(
     _check_out(out, force=force)
     with opened(database) as store:
         if after_trial is not None:
-            shown = tables_around_trial(store, after_trial)
+            shown = lab.affordance_views.tables_around_trial(store, after_trial)
         else:
             chosen = _chosen_run(store, run, tool, database)
             if compare is not None:
-                shown = tables_compared(store, chosen, store.learning_run(compare))
+                shown = lab.affordance_views.tables_compared(
+                    store, chosen, store.learning_run(compare)
+                )
             else:
-                shown = table_of_run(store, chosen)
-    figure = figures.affordances_figure(shown.calls, shown.views, shown.key)
-    _save(out, figures.encoded(figure, out.suffix), shown.title)
+                shown = lab.affordance_views.table_of_run(store, chosen)
+    figure = figures.affordances.affordances_figure(shown.calls, shown.views, shown.key)
+    _save(out, figures.canvas.encoded(figure, out.suffix), shown.title)
 
 
 def row(
@@ -131,8 +127,8 @@ def row(
     """
     _check_out(out, force=force)
     with opened(database) as store:
-        title, view = row_shown(store, row)
-    _save(out, figures.encoded(figures.row_figure(view), out.suffix), title)
+        title, view = lab.affordance_views.row_shown(store, row)
+    _save(out, figures.canvas.encoded(figures.row.row_figure(view), out.suffix), title)
 
 
 def workspace(
@@ -155,9 +151,9 @@ def workspace(
     place = load_settings(config).workspace
     reach = reach_at(place.arm, place.arm.flange_height)
     lying = paper_tools(place.tools)[ToolName(tool)]
-    figure = figures.workspace_figure(place, lying, reach)
+    figure = figures.workspace.workspace_figure(place, lying, reach)
     words = f"the bare arm reaches from {reach.inner:.1f} to {reach.outer:.1f} in"
-    _save(out, figures.encoded(figure, out.suffix), f"the table with the {tool}; {words}")
+    _save(out, figures.canvas.encoded(figure, out.suffix), f"the table with the {tool}; {words}")
 
 
 def tools(
@@ -181,9 +177,11 @@ def tools(
     whole, left = known[ToolName(tool)], known[ToolName(becomes)]
     if left.parts_missing_in(whole) or not whole.parts_missing_in(left):
         raise UsageError(f"--becomes {becomes}: a {tool} does not become that by losing parts")
-    figure = figures.tools_figure(list(known.values()), (whole, left), place.puck.radius)
+    figure = figures.tools.tools_figure(list(known.values()), (whole, left), place.puck.radius)
     _save(
-        out, figures.encoded(figure, out.suffix), f"five tools, and a {tool} that became {becomes}"
+        out,
+        figures.canvas.encoded(figure, out.suffix),
+        f"five tools, and a {tool} that became {becomes}",
     )
 
 
@@ -224,12 +222,14 @@ def learning(
     names = tool or ()
     with opened(database) as store:
         if session is not None:
-            title, tools = curves_of_robots(store, session, names)
-            figure = figures.bands_figure(tools)
+            title, tools = lab.learning_curves.curves_of_robots(store, session, names)
+            figure = figures.learning.bands_figure(tools)
         else:
-            title, curves = curves_of(store, _runs_to_draw(store, run or (), names, database))
-            figure = figures.curves_figure(curves)
-    _save(out, figures.encoded(figure, out.suffix), title)
+            title, curves = lab.learning_curves.curves_of(
+                store, _runs_to_draw(store, run or (), names, database)
+            )
+            figure = figures.learning.curves_figure(curves)
+    _save(out, figures.canvas.encoded(figure, out.suffix), title)
 
 
 def _check_out(out: Path, *, force: bool) -> None:
@@ -275,9 +275,10 @@ def _runs_to_draw(
                 f"no learning runs but of robots: --session {reproduced[-1].id} draws these"
             )
         learned_runs(store, tools[0] if tools else None, database)
-    if len(runs) > figures.MOST_CURVES:
+    most = figures.learning.MOST_CURVES
+    if len(runs) > most:
         raise UsageError(
-            f"{len(runs)} runs are more than the {figures.MOST_CURVES} lines that can be told apart; "
+            f"{len(runs)} runs are more than the {most} lines that can be told apart; "
             "choose with --run or --tool"
         )
     return runs

@@ -1,5 +1,6 @@
 """``affcli figure prediction``: how well a table predicts as it grows (§6.1)."""
 
+from affcli import lab
 from affcli.cli.database import learned_runs, opened
 from affcli.cli.files import require_new, save
 from affcli.cli.options import (
@@ -16,7 +17,6 @@ from affcli.cli.options import (
 )
 from affcli.cli.terminal import progress, say
 from affcli.errors import one_line
-from affcli.lab.predicting import predict, prediction_spec
 from affcli.report import figures
 
 
@@ -39,12 +39,12 @@ def prediction(
     require_new(out, force=force, endings=FIGURE_ENDINGS)
     with opened(database) as store:
         (run,) = learned_runs(store, tool, database)
-        spec = prediction_spec(run, tool, seed, sensor, pushes)
+        spec = lab.predicting.prediction_spec(run, tool, seed, sensor, pushes)
         done = []
         with progress(f"pushing with the {tool}", pushes) as bar:
-            for push in predict(store, run, spec):
+            for push in lab.predicting.predict(store, run, spec):
                 done.append(push)
                 bar.update(len(done), f"{len(done)} of {pushes} pushes")
     title = f"Run {run.id}, {tool}"
-    save(out, figures.encoded(figures.prediction_figure(title, done), out.suffix))
+    save(out, figures.canvas.encoded(figures.prediction.prediction_figure(title, done), out.suffix))
     say(f"{title}: {one_line(out)}")

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from affcli import lab
 from affcli.cli.database import opened
 from affcli.cli.options import (
     DEFAULT_DATABASE,
@@ -23,9 +24,6 @@ from affcli.config import load_settings, with_sensor
 from affcli.core.tool import TOOL_PARTS
 from affcli.core.trial import MOST_BEHAVIORS, LearningSpec
 from affcli.errors import UsageError
-from affcli.lab.learning import Learned
-from affcli.lab.learning import learn as learn_run
-from affcli.lab.sensing import require_sensor
 from affcli.report.learning import groups_json, groups_table, run_json, summary
 
 if TYPE_CHECKING:
@@ -79,7 +77,7 @@ def learn(
         hours = 1.0
 
     settings = with_sensor(load_settings(config), sensor)
-    require_sensor(settings)
+    lab.sensing.require_sensor(settings)
     text = settings.to_json()
     specs = [LearningSpec(name, seed, 0, hours, behaviors, text) for name in names]
     with opened(database, create=bool(names), write=True) as store:
@@ -100,7 +98,7 @@ def learn(
     )
 
 
-def _learn(store: "Store", spec: LearningSpec) -> Learned:
+def _learn(store: "Store", spec: LearningSpec) -> "lab.learning.Learned":
     """Run one learning run with progress on stderr; say what it gave."""
     goal = 3600.0 * spec.hours if spec.hours is not None else float(spec.behaviors or 0)
     with progress(spec.tool, goal) as bar:
@@ -110,7 +108,7 @@ def _learn(store: "Store", spec: LearningSpec) -> Learned:
             done = info.robot_seconds if spec.hours is not None else info.behaviors
             bar.update(min(done, goal), summary(info))
 
-        learned = learn_run(store, spec, now, update)
+        learned = lab.learning.learn(store, spec, now, update)
     info = learned.info
     verb = "learned" if learned.new else "already learned, nothing to do:"
     say(f"{verb} {spec.tool} (run {info.id}, seed {spec.seed}): {summary(info)}")

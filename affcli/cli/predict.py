@@ -1,5 +1,6 @@
 """``affcli predict``: the table as a predictive model of pushes it has never seen (§6.1)."""
 
+from affcli import lab
 from affcli.cli.database import learned_runs, opened
 from affcli.cli.options import (
     DEFAULT_DATABASE,
@@ -13,8 +14,6 @@ from affcli.cli.options import (
     TrialSensor,
 )
 from affcli.cli.terminal import progress, show_either
-from affcli.lab.predicting import predict as predict_pushes
-from affcli.lab.predicting import prediction_spec
 from affcli.planning.prediction import RADIUS
 from affcli.report.prediction import prediction_json, prediction_tables
 
@@ -37,10 +36,10 @@ def predict(
     held = shape or tool
     with opened(database) as store:
         (run,) = learned_runs(store, tool, database)
-        spec = prediction_spec(run, held, seed, sensor, pushes)
+        spec = lab.predicting.prediction_spec(run, held, seed, sensor, pushes)
         done = []
         with progress(f"pushing with the {held}", pushes) as bar:
-            for push in predict_pushes(store, run, spec):
+            for push in lab.predicting.predict(store, run, spec):
                 done.append(push)
                 bar.update(len(done), f"{len(done)} of {pushes} pushes")
     about = {"run": run.id, "tool": tool, "shape": held, "sensor": spec.sensor, "seed": seed}

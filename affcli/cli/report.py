@@ -6,14 +6,13 @@ from typing import Annotated
 
 import typer
 
+from affcli import lab
 from affcli.cli.database import opened
 from affcli.cli.files import require_new, save
 from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database, Force, check_count
 from affcli.cli.terminal import progress, say, show_either
 from affcli.core.trial import MOST_ROBOTS
 from affcli.errors import BadInputError, UsageError, one_line
-from affcli.lab.overview import overview_of
-from affcli.lab.page import content_of
 from affcli.report import page
 from affcli.report.overview import overview_json, overview_tables
 
@@ -62,7 +61,7 @@ def report(
 def _on_terminal(database: Path, *, as_json: bool) -> None:
     """Show what the database holds as tables or JSON."""
     with opened(database) as store:
-        overview = overview_of(store)
+        overview = lab.overview.overview_of(store)
     show_either(
         as_json=as_json,
         value=lambda: overview_json(overview),
@@ -73,7 +72,7 @@ def _on_terminal(database: Path, *, as_json: bool) -> None:
 def _as_page(html: Path, robot: int | None, session: int | None, database: Path) -> None:
     """Write the page."""
     with opened(database) as store, progress("replaying", 1.0) as bar:
-        content = content_of(
+        content = lab.page.content_of(
             store,
             robot,
             session,
@@ -84,7 +83,7 @@ def _as_page(html: Path, robot: int | None, session: int | None, database: Path)
     for option, number in (("--session", session), ("--robot", robot)):
         words += [] if number is None else [option, str(number)]
     command = one_line(shlex.join(words), 1000)
-    save(html, page.render(content, command).encode("utf-8", "backslashreplace"))
+    save(html, page.rendering.render(content, command).encode("utf-8", "backslashreplace"))
     differing = sum(bool(replay.differences) for replay in content.replays)
     say(f"{content.robot}, {len(content.replays)} trials to replay: {one_line(html)}")
     if differing:

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from affcli import lab
 from affcli.cli.database import opened
 from affcli.cli.options import (
     DEFAULT_DATABASE,
@@ -20,9 +21,6 @@ from affcli.cli.options import (
 from affcli.cli.terminal import now, progress, say, show_either
 from affcli.config import load_settings, settings_from_json, with_sensor
 from affcli.core.trial import MOST_ROBOTS
-from affcli.lab.overview import reproduction_of
-from affcli.lab.reproduction import reproduce as run_reproduction
-from affcli.lab.sensing import require_sensor
 from affcli.report.reproduction import reproduction_json, reproduction_tables
 
 FEW_ROBOTS = 20
@@ -67,20 +65,20 @@ def reproduce(
         workers = min(len(os.sched_getaffinity(0)), MOST_WORKERS) if _has_affinity() else 1
 
     settings = with_sensor(load_settings(config), sensor)
-    require_sensor(settings)
+    lab.sensing.require_sensor(settings)
     with opened(database, create=True, write=True) as store:
         if resume and not own:
             begun = [s for s in store.sessions("reproduce") if s.status == "running"]
             if begun:
                 settings = settings_from_json(begun[-1].settings)
                 robots, seed = begun[-1].robots, begun[-1].seed
-                require_sensor(settings)
-        events = run_reproduction(store, settings, robots, seed, workers, now)
+                lab.sensing.require_sensor(settings)
+        events = lab.reproduction.reproduce(store, settings, robots, seed, workers, now)
         session = next(events)
         with progress("reproducing", robots) as bar:
             for saved in events:
                 bar.update(saved, f"{saved} of {robots} robots")
-        result = reproduction_of(store, session, robots)
+        result = lab.overview.reproduction_of(store, session, robots)
     say(f"session {session}: {robots} robots, seed {seed}, saved in {database}")
     show_either(
         as_json=as_json,

@@ -4,6 +4,7 @@ from typing import Annotated, Any
 
 import typer
 
+from affcli import lab
 from affcli.cli.database import learned_runs, opened, say_trials
 from affcli.cli.options import (
     DEFAULT_DATABASE,
@@ -20,8 +21,6 @@ from affcli.cli.terminal import now, show, show_either
 from affcli.config import settings_from_json
 from affcli.core.task import GoalRegion, goal_regions
 from affcli.core.trial import StepRecord
-from affcli.lab.solving import SolvedStep, SolvedTrial
-from affcli.lab.solving import solve as solve_trials
 from affcli.report.trials import distances, explain_trial, solve_table
 
 DISTANCES = ("distance_to_goal", "expected_distance_to_goal", "repositioning")
@@ -57,7 +56,7 @@ def solve(
     single start was asked for and not solved.
     """
     starts = checked_starts(start)
-    trials: list[SolvedTrial] = []
+    trials: list[lab.solving.SolvedTrial] = []
     steps: list[list[tuple[int, StepRecord]]] = [[]]
     with opened(database, write=True) as store:
         runs = learned_runs(store, tool, database)
@@ -67,8 +66,8 @@ def solve(
             ]
             for run in runs
         }
-        for event in solve_trials(store, runs, goal, starts, seed, now, sensor):
-            if isinstance(event, SolvedStep):
+        for event in lab.solving.solve(store, runs, goal, starts, seed, now, sensor):
+            if isinstance(event, lab.solving.SolvedStep):
                 steps[-1].append((event.row, event.record))
                 continue
             trials.append(event)
@@ -91,7 +90,7 @@ def solve(
 
 def _as_json(
     runs: dict[str, int],
-    trial: SolvedTrial,
+    trial: "lab.solving.SolvedTrial",
     steps: list[tuple[int, StepRecord]],
     goal: GoalRegion | None,
 ) -> dict[str, Any]:

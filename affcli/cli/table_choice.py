@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from affcli import lab
 from affcli import store as stored
 from affcli.behaviors.registry import paper_behaviors
 from affcli.cli.database import learned_runs
@@ -15,7 +16,6 @@ from affcli.core.behavior import BehaviorCall
 from affcli.core.tool import TOOL_PARTS, ToolName
 from affcli.core.workspace import Workspace
 from affcli.errors import BadInputError, UsageError, one_line
-from affcli.lab.table import every_run
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -199,7 +199,7 @@ def _runs(store: "Store", choice: Choice, database: Path) -> "Sequence[LearningR
                 "leave out --tool"
             )
         return [run]
-    runs = [run for run in every_run(store) if choice.tool in (None, run.spec.tool)]
+    runs = [run for run in lab.table.every_run(store) if choice.tool in (None, run.spec.tool)]
     if choice.all_runs and runs:
         return runs
     if runs and all(run.session_id is not None for run in runs):

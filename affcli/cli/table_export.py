@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from affcli import report
+from affcli import lab, report
 from affcli.cli.database import opened
 from affcli.cli.files import require_new, save
 from affcli.cli.options import DEFAULT_DATABASE, Database, Force, one_of
@@ -24,7 +24,6 @@ from affcli.cli.table_choice import (
 )
 from affcli.cli.terminal import say, show_text
 from affcli.errors import BadInputError, UsageError, one_line
-from affcli.lab.table import Write, taken_out
 from affcli.report.csv_table import csv_lines
 from affcli.report.json_table import json_lines
 
@@ -88,7 +87,7 @@ def export(
     with opened(database) as store:
         runs = chosen_runs(store, choice, database)
         wanted = choice.filter_for(runs)
-        data, count = taken_out(store, relation, runs, wanted, region, write)
+        data, count = lab.table.taken_out(store, relation, runs, wanted, region, write)
     counted = f"{count or 'no'} {what if count != 1 else what[:-1]}"
     if out != STDOUT:
         save(out, data)
@@ -99,7 +98,7 @@ def export(
             say(counted)
 
 
-def _checked_format(kind: str | None, out: Path) -> Write[bytes]:
+def _checked_format(kind: str | None, out: Path) -> "lab.table.Write[bytes]":
     """Return what writes the format that was named, or else that of the file's ending.
 
     Raises:
@@ -140,7 +139,7 @@ def _encoded(lines: "Iterable[str]") -> bytes:
 
 def _parquet(columns: "Sequence[Column]", rows: "Iterable[tuple[Any, ...]]") -> bytes:
     """Write Parquet."""
-    return report.parquet_bytes(columns, rows)
+    return report.parquet_table.parquet_bytes(columns, rows)
 
 
-FORMATS: dict[str, Write[bytes]] = {"csv": _csv, "json": _json, "parquet": _parquet}
+FORMATS: "dict[str, lab.table.Write[bytes]]" = {"csv": _csv, "json": _json, "parquet": _parquet}

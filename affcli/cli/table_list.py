@@ -1,5 +1,6 @@
 """``affcli table list``: the rows of the affordance tables, filtered."""
 
+from affcli import lab
 from affcli.cli.database import opened
 from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database
 from affcli.cli.table_choice import (
@@ -15,7 +16,6 @@ from affcli.cli.table_choice import (
 )
 from affcli.cli.terminal import say, show, show_json
 from affcli.errors import one_line
-from affcli.lab.table import listed_rows
 from affcli.report.rows import rows_json, rows_table
 
 
@@ -47,7 +47,7 @@ def list_rows(
     )
     with opened(database) as store:
         runs = chosen_runs(store, choice, database)
-        rows = listed_rows(store, runs, choice.filter_for(runs), region)
+        rows = lab.table.listed_rows(store, runs, choice.filter_for(runs), region)
     if as_json:
         show_json(rows_json(rows))
     else:

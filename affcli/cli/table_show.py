@@ -4,10 +4,10 @@ from typing import Annotated
 
 import typer
 
+from affcli import lab
 from affcli.cli.database import opened
 from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database, check_count
 from affcli.cli.terminal import show_either
-from affcli.lab.table import history_of, region_of, tool_of
 from affcli.report.rows import row_json, row_tables
 
 
@@ -28,8 +28,8 @@ def show_row(
     with opened(database) as store:
         stored = store.affordance(row_id)
         run = store.learning_run(stored.run_id)
-        history = history_of(store, row_id)
+        history = lab.table.history_of(store, row_id)
         tries = store.row_tries(row_id)
-    region = region_of(tool_of(run), stored)
+    region = lab.table.region_of(lab.table.tool_of(run), stored)
     found = (stored, region, run, history, tries)
     show_either(as_json=as_json, value=lambda: row_json(*found), tables=lambda: row_tables(*found))

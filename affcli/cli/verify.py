@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from affcli import lab
 from affcli.cli.database import learned_runs, opened
 from affcli.cli.options import (
     DEFAULT_DATABASE,
@@ -18,8 +19,6 @@ from affcli.cli.options import (
     check_count,
 )
 from affcli.cli.terminal import now, progress, show_either
-from affcli.lab.verifying import verification_spec
-from affcli.lab.verifying import verify as verify_table
 from affcli.report.verification import Verification, verification_json, verification_tables
 
 
@@ -55,10 +54,12 @@ def verify(
     held = shape or tool
     with opened(database, write=update) as store:
         (run,) = learned_runs(store, tool, database)
-        spec = verification_spec(run, held, seed, sensor, rows, until_verdict=until_verdict)
+        spec = lab.verifying.verification_spec(
+            run, held, seed, sensor, rows, until_verdict=until_verdict
+        )
         tries = []
         with progress(f"{tool}, row by row", spec.tries) as bar:
-            for one in verify_table(store, run, spec, now, update=update):
+            for one in lab.verifying.verify(store, run, spec, now, update=update):
                 tries.append(one)
                 bar.update(len(tries), f"{len(tries)} of {spec.tries} tries")
     found = Verification(run.id, spec, run.rows, update, tuple(tries))

@@ -1,15 +1,15 @@
 """What is shown: rich tables and plain numbers, returned to the caller; never printed here.
 
-`parquet_bytes` is imported when it is first used: pyarrow need not be installed.
+`parquet_table` is imported when it is first used: pyarrow need not be installed.
 """
 
 from typing import TYPE_CHECKING
 
-from affcli.lazy import lazy_names
+from affcli.lazy import lazy_modules
 
 if TYPE_CHECKING:
-    from affcli.report.parquet_table import parquet_bytes
+    from affcli.report import parquet_table
 
-__all__ = ["parquet_bytes"]
+__all__ = ["parquet_table"]
 
-__getattr__ = lazy_names(__name__, {"parquet_bytes": "parquet_table"})
+__getattr__ = lazy_modules(__name__, __all__)

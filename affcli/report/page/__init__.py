@@ -1,15 +1,15 @@
 """One page that holds everything: results, tools, replays, and why each row was chosen.
 
-`render` is imported when it is first used: the templates' library is for the page alone.
+`rendering` is imported when it is first used: the library of its templates is for the page alone.
 """
 
 from typing import TYPE_CHECKING
 
-from affcli.lazy import lazy_names
+from affcli.lazy import lazy_modules
 
 if TYPE_CHECKING:
-    from affcli.report.page.rendering import render
+    from affcli.report.page import rendering
 
-__all__ = ["render"]
+__all__ = ["rendering"]
 
-__getattr__ = lazy_names(__name__, {"render": "rendering"})
+__getattr__ = lazy_modules(__name__, __all__)
