@@ -166,5 +166,8 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
 
 def goes_on(name: str) -> bool:
     """Tell whether a command, given again after an interruption, goes on from what was saved."""
-    entries = (entry for section in SECTIONS.values() for entry in section)
-    return any(isinstance(entry, Command) and entry[0::3] == (name, True) for entry in entries)
+    return any(
+        isinstance(entry, Command) and entry.name == name and entry.goes_on
+        for section in SECTIONS.values()
+        for entry in section
+    )

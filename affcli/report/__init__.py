@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 from affcli.lazy import lazy_modules
 
 if TYPE_CHECKING:
-    from affcli.report import parquet_table
+    from affcli.report import parquet_table as parquet_table
 
-__all__ = ["parquet_table"]
-
-__getattr__ = lazy_modules(__name__, __all__)
+__getattr__ = lazy_modules(__name__)

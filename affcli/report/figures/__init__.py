@@ -8,30 +8,15 @@ from typing import TYPE_CHECKING
 from affcli.lazy import lazy_modules
 
 if TYPE_CHECKING:
-    from affcli.report.figures import (
-        adaptation,
-        affordances,
-        canvas,
-        learning,
-        prediction,
-        results,
-        row,
-        tools,
-        trial,
-        workspace,
-    )
+    from affcli.report.figures import adaptation as adaptation
+    from affcli.report.figures import affordances as affordances
+    from affcli.report.figures import canvas as canvas
+    from affcli.report.figures import learning as learning
+    from affcli.report.figures import prediction as prediction
+    from affcli.report.figures import results as results
+    from affcli.report.figures import row as row
+    from affcli.report.figures import tools as tools
+    from affcli.report.figures import trial as trial
+    from affcli.report.figures import workspace as workspace
 
-__all__ = [
-    "adaptation",
-    "affordances",
-    "canvas",
-    "learning",
-    "prediction",
-    "results",
-    "row",
-    "tools",
-    "trial",
-    "workspace",
-]
-
-__getattr__ = lazy_modules(__name__, __all__)
+__getattr__ = lazy_modules(__name__)

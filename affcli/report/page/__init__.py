@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 from affcli.lazy import lazy_modules
 
 if TYPE_CHECKING:
-    from affcli.report.page import rendering
+    from affcli.report.page import rendering as rendering
 
-__all__ = ["rendering"]
-
-__getattr__ = lazy_modules(__name__, __all__)
+__getattr__ = lazy_modules(__name__)
