@@ -43,7 +43,7 @@ def empty(tmp_path: Path) -> Path:
     return path
 
 
-def test_help_imports_nothing_heavy() -> None:
+def test_the_help_of_the_program_imports_nothing_heavy() -> None:
     heavy = {
         "numpy",
         "sqlalchemy",
@@ -54,12 +54,18 @@ def test_help_imports_nothing_heavy() -> None:
         *CAMERA,
         *PICTURES,
     }
+    for args in (("--help",), ("figure", "--help"), ("--version",)):
+        assert not imported_by(*args) & heavy
+
+
+def test_the_help_of_a_command_imports_no_engine_and_no_database() -> None:
+    """Its module imports at the top; what is slow, or may be missing, waits for its first use."""
+    heavy = {"sqlalchemy", "pymunk", "alembic", *CAMERA, *PICTURES}
     for command in (
-        *((), ("learn",), ("replay",), ("report",), ("camera", "view"), ("table", "export")),
-        *(("figure", "row"), ("figure", "trial")),
+        *(("learn",), ("solve",), ("replay",), ("report",), ("camera", "view")),
+        *(("table", "export"), ("figure", "row"), ("figure", "trial")),
     ):
         assert not imported_by(*command, "--help") & heavy
-    assert not imported_by("--version") & heavy
 
 
 def test_sql_imports_neither_sqlalchemy_nor_physics(empty: Path) -> None:

@@ -6,12 +6,14 @@ from pathlib import Path
 
 import pytest
 
+from affcli.cli.commands import SECTIONS, Group
 from tests.cli.program import done, rows
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text()
 QUERIES = re.findall(r"^```sql\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
-GROUPS = {"camera", "db", "figure", "table"}
+LISTED = [entry for section in SECTIONS.values() for entry in section]
+GROUPS = {entry.name for entry in LISTED if isinstance(entry, Group)}
 QUOTED = re.compile(r"`([^`]+)`")
 
 
@@ -81,10 +83,11 @@ def test_every_command_and_option_exists(command: str, options: list[str]) -> No
 
 def test_every_command_is_in_the_table() -> None:
     shown = {command for command, *_ in commands()}
-    for group in ((), *((name,) for name in GROUPS)):
-        listed = help_of(*group).split("Commands:\n")[1]
-        names = {" ".join((*group, line.split()[0])) for line in listed.splitlines()}
-        assert names - GROUPS <= shown
+    for entry in LISTED:
+        if isinstance(entry, Group):
+            assert {f"{entry.name} {command.name}" for command in entry.commands} <= shown
+        else:
+            assert entry.name in shown
 
 
 @pytest.mark.parametrize("option", ["--json", "--db", "--config"])

@@ -1,59 +1,123 @@
-"""The ``affcli`` program: its commands."""
+"""The ``affcli`` program: its help, and how the command that was given is found."""
+
+from importlib import import_module
+from typing import Any
 
 import typer
+from typer.core import TyperCommand, TyperGroup
 
 from affcli import __version__
-from affcli.cli import (
-    break_tool,
-    camera,
-    db,
-    doctor,
-    figure,
-    learn,
-    predict,
-    replay,
-    report,
-    reproduce,
-    settings,
-    solve,
-    sql,
-    table,
-    verify,
-)
-from affcli.cli.terminal import show_text
+from affcli.cli.commands import SECTIONS, Command, Group
+from affcli.cli.terminal import say, show_text
+from affcli.errors import UsageError
+
+
+class LazyCommand(TyperCommand):
+    """A command that the help can list; its module is imported when it is run, or asked for help.
+
+    Typer makes a context to run a command or to show its help, and uses the command in that
+    context from then on: the imported one.
+    """
+
+    def __init__(self, command: Command) -> None:
+        super().__init__(command.name, short_help=command.help, rich_markup_mode=None)
+        self._home = command.home
+
+    def loaded(self) -> Any:
+        """Import the command's module and return the command, with its options."""
+        module, _, function = self._home.partition(":")
+        single = typer.Typer(
+            add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None
+        )
+        single.command(self.name)(getattr(import_module(f"affcli.cli.{module}"), function))
+        return typer.main.get_command(single)
+
+    def make_context(self, *args: Any, **kwargs: Any) -> Any:
+        """Make the context of the imported command."""
+        return self.loaded().make_context(*args, **kwargs)
+
+
+class CommandGroup(TyperGroup):
+    """A word with commands under it, which says what they are when none was given."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Refuse to go on without a command: its help on stderr, and a usage error (2)."""
+        if not args:
+            say(ctx.get_help())
+            raise typer.Exit(UsageError.exit_code)
+        return super().parse_args(ctx, args)
+
+
+class Program(CommandGroup):
+    """The program, whose help lists the commands under headings."""
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write each heading with its commands and what they do."""
+        del ctx
+        for heading, entries in SECTIONS.items():
+            with formatter.section(heading):
+                formatter.write_dl([(entry.name, entry.help) for entry in entries])
+
 
 app = typer.Typer(
     name="affcli",
+    cls=Program,
     help="A robot learns what tools are good for by playing with them (after Stoytchev, 2008).",
+    context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
     add_completion=False,
 )
-app.command("learn")(learn.learn)
-app.command("solve")(solve.solve)
-app.command("break-tool")(break_tool.break_tool)
-app.command("verify")(verify.verify)
-app.command("predict")(predict.predict)
-app.command("report")(report.report)
-app.command("replay")(replay.replay)
-app.command("reproduce")(reproduce.reproduce)
-app.command("settings")(settings.settings)
-app.command("sql")(sql.sql)
-app.command("doctor")(doctor.doctor)
-app.add_typer(camera.app, name="camera")
-app.add_typer(db.app, name="db")
-app.add_typer(figure.app, name="figure")
-app.add_typer(table.app, name="table")
 
 
-@app.callback(invoke_without_command=True)
-def root(
-    context: typer.Context,
-    *,
-    version: bool = typer.Option(False, "--version", help="Print the version and leave."),
-) -> None:
-    """A robot learns what tools are good for by playing with them (after Stoytchev, 2008)."""
-    if version:
+def _show_version(asked: bool) -> None:
+    """Print the version and leave, when asked to."""
+    if asked:
         show_text(f"affcli {__version__}\n")
         raise typer.Exit
-    db.help_without_command(context)
+
+
+@app.callback()
+def root(
+    *,
+    version: bool = typer.Option(
+        False,
+        "--version",
+        callback=_show_version,
+        is_eager=True,
+        help="Print the version and leave.",
+    ),
+) -> None:
+    """A robot learns what tools are good for by playing with them (after Stoytchev, 2008)."""
+    del version
+
+
+def build(entry: Command | Group) -> TyperCommand | TyperGroup:
+    """Return what runs a command, or one of the commands of a group."""
+    if isinstance(entry, Command):
+        return LazyCommand(entry)
+    return CommandGroup(
+        name=entry.name,
+        help=entry.help,
+        commands=[build(command) for command in entry.commands],
+        rich_markup_mode=None,
+    )
+
+
+def run() -> int:
+    """Run the command that was given and return its exit code.
+
+    Raises:
+        UsageError: there is no such command or option, or a value is missing or no number.
+    """
+    try:
+        code = program(prog_name="affcli", standalone_mode=False)
+    except typer.TyperException as error:
+        raise UsageError(error.format_message()) from error
+    return code if isinstance(code, int) else 0
+
+
+program: Any = typer.main.get_command(app)
+for _entries in SECTIONS.values():
+    for _entry in _entries:
+        program.add_command(build(_entry))

@@ -1,32 +1,28 @@
 """``affcli break-tool``: the tool breaks, the robot is not told, and adapts (§7.2)."""
 
-from typing import Annotated
-
-import typer
-
+from affcli import lab
+from affcli.cli.database import learned_runs, opened, say_trials
 from affcli.cli.options import (
+    DEFAULT_BROKEN,
     DEFAULT_DATABASE,
+    DEFAULT_TOOL,
     AsJson,
+    Becomes,
     Database,
+    LearnedTool,
     Seed,
     TrialSensor,
-    checked_seed,
-    checked_sensor,
-    checked_tool,
 )
-from affcli.cli.solve import learned_runs, say_trials
-from affcli.cli.terminal import now, progress, show, show_json
+from affcli.cli.terminal import now, progress, show_either
+from affcli.config import settings_from_json
 from affcli.errors import UsageError
+from affcli.report.breaking import broken_json, broken_tables
 
 
 def break_tool(
     *,
-    tool: Annotated[str, typer.Option("--tool", help="What was learned.", metavar="NAME")] = (
-        "t-hook"
-    ),
-    becomes: Annotated[
-        str, typer.Option("--becomes", help="The shape that is left.", metavar="NAME")
-    ] = "l-hook",
+    tool: LearnedTool = DEFAULT_TOOL,
+    becomes: Becomes = DEFAULT_BROKEN,
     seed: Seed = 0,
     sensor: TrialSensor = None,
     database: Database = DEFAULT_DATABASE,
@@ -37,31 +33,22 @@ def break_tool(
     Every trial starts from the table as learned and keeps its counters to itself. The same trials
     with the whole tool are done beside them, to compare.
     """
-    checked_tool(tool)
-    if checked_tool(becomes) == tool:
+    if becomes == tool:
         raise UsageError(f"--becomes {becomes}: a broken {tool} must be another shape than it was")
-    checked_seed(seed)
-    kind = checked_sensor(sensor)
-
-    from affcli.config import settings_from_json
-    from affcli.lab.bench import missing_side
-    from affcli.lab.breaking import break_tool as break_trials
-    from affcli.report.breaking import broken_json, broken_tables
-    from affcli.store import open_store
-
-    with open_store(database, create=False, write=True) as store:
+    with opened(database, write=True) as store:
         (run,) = learned_runs(store, tool, database)
         with progress(f"{tool} becomes {becomes}", 32) as bar:
             numbers, trials = [], []
-            for number, trial in break_trials(store, run, becomes, seed, now, kind):
+            for number, trial in lab.breaking.break_tool(store, run, becomes, seed, now, sensor):
                 numbers.append(number)
                 trials.append(trial)
                 bar.update(len(trials), f"{len(trials)} of 32 trials")
-    side = missing_side(settings_from_json(run.spec.settings), tool, becomes)
-    if as_json:
-        show_json({"run": run.id, "trials": numbers, **broken_json(becomes, side, trials)})
-    else:
-        show(*broken_tables(becomes, side, trials))
+    side = lab.bench.missing_side(settings_from_json(run.spec.settings), tool, becomes)
+    show_either(
+        as_json=as_json,
+        value=lambda: {"run": run.id, "trials": numbers, **broken_json(becomes, side, trials)},
+        tables=lambda: broken_tables(becomes, side, trials),
+    )
     tried_in_vain = [
         number
         for number, trial in zip(numbers, trials, strict=True)

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from affcli import lab
 from affcli.cli.files import require_new, save
 from affcli.cli.options import (
     AsJson,
@@ -15,12 +16,13 @@ from affcli.cli.options import (
     Seed,
     checked_length,
     checked_numbers,
-    checked_seed,
 )
-from affcli.cli.terminal import say, show, show_json
+from affcli.cli.terminal import say, show_either
+from affcli.config import load_settings
 from affcli.core.geometry import Point
 from affcli.core.tool import Color
 from affcli.errors import BadInputError, UsageError, one_line
+from affcli.report.camera import calibration_tables
 
 TURNS = (0, 90, 180, 270)
 LARGEST_GRID = 40
@@ -80,7 +82,6 @@ def calibrate(
     With --turn 0 the first marker is the lower left one in the picture and x runs to the right;
     each 90 turns that counter-clockwise. Equal markers cannot tell.
     """
-    checked_seed(seed)
     columns, rows = _grid(markers)
     color = None if marker_color is None else _color(marker_color)
     if turn not in TURNS:
@@ -98,26 +99,21 @@ def calibrate(
     if out is not None:
         require_new(out, force=force)
 
-    from affcli.config import load_settings
-    from affcli.lab.photographs import calibrate_picture, pattern_of
-    from affcli.lab.sensing import eye_of, require_camera
-    from affcli.report.camera import calibration_tables
-
-    require_camera()
+    lab.sensing.require_camera()
     if image is None:
-        found = eye_of(load_settings(config), seed, 0).calibration
+        found = lab.sensing.eye_of(load_settings(config), seed, 0).calibration
     else:
-        pattern = pattern_of(columns, rows, spacing, first, turn)
-        found = calibrate_picture(image, pattern, color, sensor_width)
+        pattern = lab.photographs.pattern_of(columns, rows, spacing, first, turn)
+        found = lab.photographs.calibrate_picture(image, pattern, color, sensor_width)
     values = found.as_json()
     if out is not None:
         save(out, (json.dumps(values, indent=2) + "\n").encode())
         say(f"the calibration is in {one_line(out)}")
-    if as_json:
-        show_json(values)
-    else:
-        camera = found.camera
-        show(*calibration_tables(values, camera.position, camera.tilt_degrees))
+    show_either(
+        as_json=as_json,
+        value=lambda: values,
+        tables=lambda: calibration_tables(values, found.camera.position, found.camera.tilt_degrees),
+    )
 
 
 def _grid(text: str) -> tuple[int, int]:

@@ -5,8 +5,10 @@ from typing import Annotated
 
 import typer
 
+from affcli import lab
 from affcli.cli.options import AsJson
-from affcli.cli.terminal import show, show_json
+from affcli.cli.terminal import show_either
+from affcli.report.camera import places_json, places_table
 
 
 def locate(
@@ -32,11 +34,9 @@ def locate(
     [cup] with rgb = [30, 110, 200] looks for that colour; height, 0 if not given, is how high over
     the table the middle of what is seen lies (inches).
     """
-    from affcli.lab.photographs import locate_in_picture
-    from affcli.report.camera import places_json, places_table
-
-    places = locate_in_picture(image, calibration, colors)
-    if as_json:
-        show_json(places_json(places))
-    else:
-        show(places_table(places))
+    places = lab.photographs.locate_in_picture(image, calibration, colors)
+    show_either(
+        as_json=as_json,
+        value=lambda: places_json(places),
+        tables=lambda: [places_table(places)],
+    )

@@ -5,18 +5,20 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from affcli import lab
+from affcli.cli.database import opened
 from affcli.cli.files import require_new, save
 from affcli.cli.options import (
     DEFAULT_DATABASE,
-    LARGEST_ID,
     Config,
     Database,
     Force,
+    Run,
     Seed,
-    checked_count,
-    checked_seed,
+    check_count,
 )
 from affcli.cli.terminal import say
+from affcli.config import load_settings
 from affcli.errors import UsageError, one_line
 
 if TYPE_CHECKING:
@@ -27,13 +29,22 @@ Video = Annotated[
     Path | None, typer.Option("--video", help="15 frames/s, *.mp4 or *.avi.", metavar="FILE")
 ]
 Trial = Annotated[
-    int | None, typer.Option("--trial", help="A trial's id in the database.", metavar="ID")
-]
-Run = Annotated[
-    int | None, typer.Option("--run", help="A learning run's id, instead.", metavar="ID")
+    int | None,
+    typer.Option(
+        "--trial",
+        help="A trial's id in the database.",
+        metavar="ID",
+        callback=check_count("--trial"),
+    ),
 ]
 Step = Annotated[
-    int, typer.Option("--step", help="Step of the trial, or behavior of the run.", metavar="N")
+    int,
+    typer.Option(
+        "--step",
+        help="Step of the trial, or behavior of the run.",
+        metavar="N",
+        callback=check_count("--step"),
+    ),
 ]
 After = Annotated[bool, typer.Option("--after", help="After the behavior, not before it.")]
 Pattern = Annotated[bool, typer.Option("--pattern", help="The calibration pattern alone.")]
@@ -62,26 +73,25 @@ def view(
     Of a step of a trial or a behavior of a learning run, whatever sensor it was seen through; or of
     the table as a trial begins.
     """
-    checked_seed(seed)
     _check_what(
         trial, run, step, after=after, pattern=pattern, video=video, out=out, own=(seed, config)
     )
     _check_where(out, video, force=force)
 
-    from affcli.config import load_settings
-    from affcli.lab.sensing import require_camera
-    from affcli.lab.viewing import film_of_step, view_of_pattern, view_of_step, view_of_table
-
-    require_camera()
+    lab.sensing.require_camera()
     settings = load_settings(config)
     scene = _stored_scene(database, trial, run, step)
     if scene is not None:
-        shown = view_of_step(scene, after=after)
+        shown = lab.viewing.view_of_step(scene, after=after)
         if video is not None:
-            save(video, film_of_step(scene, video.suffix.lower(), frame_alone=frame))
+            save(video, lab.viewing.film_of_step(scene, video.suffix.lower(), frame_alone=frame))
             say(f"{scene.title}, {scene.call}: {one_line(video)}")
     else:
-        shown = view_of_pattern(settings, seed) if pattern else view_of_table(settings, seed)
+        shown = (
+            lab.viewing.view_of_pattern(settings, seed)
+            if pattern
+            else lab.viewing.view_of_table(settings, seed)
+        )
     if out is not None:
         save(out, shown.png(frame_alone=frame))
         say(f"{shown.title}: {one_line(out)}")
@@ -112,9 +122,6 @@ def _check_what(
         raise UsageError("a video of what? give --trial ID or --run ID, and --step N")
     if not stored and (after or step != 1):
         raise UsageError("--step and --after go with --trial or --run")
-    for option, number in (("--trial", trial), ("--run", run), ("--step", step)):
-        if number is not None:
-            checked_count(option, number, LARGEST_ID)
 
 
 def _check_where(out: Path | None, video: Path | None, *, force: bool) -> None:
@@ -130,12 +137,10 @@ def _stored_scene(
     database: Path, trial: int | None, run: int | None, step: int
 ) -> "StepScene | None":
     """Return a step of a trial or a behavior of a run from the database; None for neither."""
-    from affcli.store import open_store
-
     if trial is not None:
-        with open_store(database, create=False, write=False) as store:
+        with opened(database) as store:
             return store.step_scene(trial, step)
     if run is not None:
-        with open_store(database, create=False, write=False) as store:
+        with opened(database) as store:
             return store.behavior_scene(run, step)
     return None

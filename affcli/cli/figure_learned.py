@@ -6,46 +6,76 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from affcli import lab
+from affcli.cli.database import learned_runs, opened
 from affcli.cli.files import require_new, save
 from affcli.cli.options import (
+    DEFAULT_BROKEN,
     DEFAULT_DATABASE,
+    DEFAULT_TOOL,
+    FIGURE_ENDINGS,
+    LARGEST_ID,
+    Becomes,
     Config,
     Database,
+    FigureOut,
     Force,
+    Run,
+    check_count,
+    check_if_given,
     checked_count,
     checked_tool,
     checked_tools,
 )
-from affcli.cli.solve import learned_runs
 from affcli.cli.terminal import say
+from affcli.config import load_settings
+from affcli.core.tool import ToolName, paper_tools
 from affcli.errors import UsageError, one_line
+from affcli.lab.drawing import require_figures
+from affcli.report import figures
+from affcli.simulation.arm import reach_at
 
 if TYPE_CHECKING:
     from affcli.store import LearningRunInfo, Store
 
-ENDINGS = (".png", ".svg", ".pdf")
-"""Of the files that figures can be."""
-LARGEST_ID = 2**63 - 1
-Out = Annotated[Path, typer.Option("--out", help="*.png, *.svg or *.pdf.", metavar="FILE")]
-Run = Annotated[int | None, typer.Option("--run", help="A learning run's id.", metavar="ID")]
 OneTool = Annotated[
     str | None,
-    typer.Option("--tool", help="Or the latest run of this tool.", metavar="NAME"),
+    typer.Option(
+        "--tool",
+        help="Or the latest run of this tool.",
+        metavar="NAME",
+        callback=check_if_given(checked_tool),
+    ),
 ]
+
+
+def _checked_ids(runs: Sequence[int] | None) -> list[int]:
+    """Return the ids of learning runs; BadInputError when one is none that a database has."""
+    return [checked_count("--run", run, LARGEST_ID) for run in runs or ()]
 
 
 def affordances(
     *,
-    out: Out,
+    out: FigureOut,
     run: Run = None,
     tool: OneTool = None,
     compare: Annotated[
         int | None,
-        typer.Option("--compare", help="Another run, beside it.", metavar="ID"),
+        typer.Option(
+            "--compare",
+            help="Another run, beside it.",
+            metavar="ID",
+            callback=check_count("--compare"),
+        ),
     ] = None,
     after_trial: Annotated[
         int | None,
-        typer.Option("--after-trial", help="The table before and after it.", metavar="ID"),
+        typer.Option(
+            "--after-trial",
+            help="The table before and after it.",
+            metavar="ID",
+            callback=check_count("--after-trial"),
+        ),
     ] = None,
     database: Database = DEFAULT_DATABASE,
     force: Force = False,
@@ -63,33 +93,31 @@ def affordances(
         raise UsageError("give --run or --tool, not both")
     if after_trial is not None and (run, tool, compare) != (None, None, None):
         raise UsageError("--after-trial has a run: leave out --run, --tool and --compare")
-    _check_ids(("--run", run), ("--compare", compare), ("--after-trial", after_trial))
-    if tool is not None:
-        checked_tool(tool)
     _check_out(out, force=force)
-
-    from affcli.lab.affordance_views import table_of_run, tables_around_trial, tables_compared
-    from affcli.report.figures.affordances import affordances_figure
-    from affcli.report.figures.canvas import encoded
-    from affcli.store import open_store
-
-    with open_store(database, create=False, write=False) as store:
+    with opened(database) as store:
         if after_trial is not None:
-            shown = tables_around_trial(store, after_trial)
+            shown = lab.affordance_views.tables_around_trial(store, after_trial)
         else:
             chosen = _chosen_run(store, run, tool, database)
             if compare is not None:
-                shown = tables_compared(store, chosen, store.learning_run(compare))
+                shown = lab.affordance_views.tables_compared(
+                    store, chosen, store.learning_run(compare)
+                )
             else:
-                shown = table_of_run(store, chosen)
-    figure = affordances_figure(shown.calls, shown.views, shown.key)
-    _save(out, encoded(figure, out.suffix), shown.title)
+                shown = lab.affordance_views.table_of_run(store, chosen)
+    figure = figures.affordances.affordances_figure(shown.calls, shown.views, shown.key)
+    _save(out, figures.canvas.encoded(figure, out.suffix), shown.title)
 
 
 def row(
     *,
-    row: Annotated[int, typer.Argument(help="A row's id in the database.", metavar="ID")],
-    out: Out,
+    row: Annotated[
+        int,
+        typer.Argument(
+            help="A row's id in the database.", metavar="ID", callback=check_count("row")
+        ),
+    ],
+    out: FigureOut,
     database: Database = DEFAULT_DATABASE,
     force: Force = False,
 ) -> None:
@@ -97,25 +125,21 @@ def row(
 
     As in Fig. 5. `affcli sql "select * from affordance_table"` shows the rows with their ids.
     """
-    _check_ids(("row", row))
     _check_out(out, force=force)
-
-    from affcli.lab.affordance_views import row_shown
-    from affcli.report.figures.canvas import encoded
-    from affcli.report.figures.row import row_figure
-    from affcli.store import open_store
-
-    with open_store(database, create=False, write=False) as store:
-        title, view = row_shown(store, row)
-    _save(out, encoded(row_figure(view), out.suffix), title)
+    with opened(database) as store:
+        title, view = lab.affordance_views.row_shown(store, row)
+    _save(out, figures.canvas.encoded(figures.row.row_figure(view), out.suffix), title)
 
 
 def workspace(
     *,
-    out: Out,
+    out: FigureOut,
     tool: Annotated[
-        str, typer.Option("--tool", help="What lies at the centre.", metavar="NAME")
-    ] = "t-hook",
+        str,
+        typer.Option(
+            "--tool", help="What lies at the centre.", metavar="NAME", callback=checked_tool
+        ),
+    ] = DEFAULT_TOOL,
     config: Config = None,
     force: Force = False,
 ) -> None:
@@ -123,32 +147,23 @@ def workspace(
 
     As in Fig. 8, as a trial begins.
     """
-    checked_tool(tool)
     _check_out(out, force=force)
-
-    from affcli.config import load_settings
-    from affcli.core.tool import ToolName, paper_tools
-    from affcli.report.figures.canvas import encoded
-    from affcli.report.figures.workspace import workspace_figure
-    from affcli.simulation.arm import reach_at
-
     place = load_settings(config).workspace
     reach = reach_at(place.arm, place.arm.flange_height)
     lying = paper_tools(place.tools)[ToolName(tool)]
-    figure = workspace_figure(place, lying, reach)
+    figure = figures.workspace.workspace_figure(place, lying, reach)
     words = f"the bare arm reaches from {reach.inner:.1f} to {reach.outer:.1f} in"
-    _save(out, encoded(figure, out.suffix), f"the table with the {tool}; {words}")
+    _save(out, figures.canvas.encoded(figure, out.suffix), f"the table with the {tool}; {words}")
 
 
 def tools(
     *,
-    out: Out,
-    tool: Annotated[str, typer.Option("--tool", help="The one that breaks.", metavar="NAME")] = (
-        "t-hook"
-    ),
-    becomes: Annotated[
-        str, typer.Option("--becomes", help="The shape that is left.", metavar="NAME")
-    ] = "l-hook",
+    out: FigureOut,
+    tool: Annotated[
+        str,
+        typer.Option("--tool", help="The one that breaks.", metavar="NAME", callback=checked_tool),
+    ] = DEFAULT_TOOL,
+    becomes: Becomes = DEFAULT_BROKEN,
     config: Config = None,
     force: Force = False,
 ) -> None:
@@ -156,37 +171,41 @@ def tools(
 
     As in Figs. 1 and 9, with the names of their parts.
     """
-    checked_tool(tool)
-    checked_tool(becomes)
     _check_out(out, force=force)
-
-    from affcli.config import load_settings
-    from affcli.core.tool import ToolName, paper_tools
-    from affcli.report.figures.canvas import encoded
-    from affcli.report.figures.tools import tools_figure
-
     place = load_settings(config).workspace
     known = paper_tools(place.tools)
     whole, left = known[ToolName(tool)], known[ToolName(becomes)]
     if left.parts_missing_in(whole) or not whole.parts_missing_in(left):
         raise UsageError(f"--becomes {becomes}: a {tool} does not become that by losing parts")
-    figure = tools_figure(list(known.values()), (whole, left), place.puck.radius)
-    _save(out, encoded(figure, out.suffix), f"five tools, and a {tool} that became {becomes}")
+    figure = figures.tools.tools_figure(list(known.values()), (whole, left), place.puck.radius)
+    _save(
+        out,
+        figures.canvas.encoded(figure, out.suffix),
+        f"five tools, and a {tool} that became {becomes}",
+    )
 
 
 def learning(
     *,
-    out: Out,
+    out: FigureOut,
     run: Annotated[
         list[int] | None,
-        typer.Option("--run", help="Learning runs, instead of all.", metavar="ID"),
+        typer.Option(
+            "--run", help="Learning runs, instead of all.", metavar="ID", callback=_checked_ids
+        ),
     ] = None,
     tool: Annotated[
-        list[str] | None, typer.Option("--tool", help="Only those of these.", metavar="NAME")
+        list[str] | None,
+        typer.Option("--tool", help="Only those of these.", metavar="NAME", callback=checked_tools),
     ] = None,
     session: Annotated[
         int | None,
-        typer.Option("--session", help="The robots of a reproduction.", metavar="ID"),
+        typer.Option(
+            "--session",
+            help="The robots of a reproduction.",
+            metavar="ID",
+            callback=check_count("--session"),
+        ),
     ] = None,
     database: Database = DEFAULT_DATABASE,
     force: Force = False,
@@ -199,38 +218,23 @@ def learning(
     """
     if run and (tool or session is not None):
         raise UsageError("give --run alone, without --tool and --session")
-    _check_ids(*(("--run", one) for one in run or ()), ("--session", session))
-    names = checked_tools(tool or ())
     _check_out(out, force=force)
-
-    from affcli.lab.learning_curves import curves_of, curves_of_robots
-    from affcli.report.figures.canvas import encoded
-    from affcli.report.figures.learning import bands_figure, curves_figure
-    from affcli.store import open_store
-
-    with open_store(database, create=False, write=False) as store:
+    names = tool or ()
+    with opened(database) as store:
         if session is not None:
-            title, tools = curves_of_robots(store, session, names)
-            figure = bands_figure(tools)
+            title, tools = lab.learning_curves.curves_of_robots(store, session, names)
+            figure = figures.learning.bands_figure(tools)
         else:
-            title, curves = curves_of(store, _runs_to_draw(store, run or (), names, database))
-            figure = curves_figure(curves)
-    _save(out, encoded(figure, out.suffix), title)
-
-
-def _check_ids(*given: tuple[str, int | None]) -> None:
-    """Refuse numbers that nothing in a database can have."""
-    for option, number in given:
-        if number is not None:
-            checked_count(option, number, LARGEST_ID)
+            title, curves = lab.learning_curves.curves_of(
+                store, _runs_to_draw(store, run or (), names, database)
+            )
+            figure = figures.learning.curves_figure(curves)
+    _save(out, figures.canvas.encoded(figure, out.suffix), title)
 
 
 def _check_out(out: Path, *, force: bool) -> None:
     """Make sure, before any work, that a figure can be drawn and has a place."""
-    require_new(out, force=force, endings=ENDINGS)
-
-    from affcli.lab.drawing import require_figures
-
+    require_new(out, force=force, endings=FIGURE_ENDINGS)
     require_figures()
 
 
@@ -246,7 +250,7 @@ def _chosen_run(
     """Return a learning run, finished or not, or the latest finished one of a tool."""
     if run is not None:
         return store.learning_run(run)
-    name = tool or "t-hook"
+    name = tool or DEFAULT_TOOL
     unfinished = store.learning_runs(tool=name, status="running")
     if unfinished and store.latest_run(name) is None:
         number = unfinished[-1].id
@@ -260,8 +264,6 @@ def _runs_to_draw(
     store: "Store", ids: Sequence[int], tools: Sequence[str], database: Path
 ) -> "list[LearningRunInfo]":
     """Return learning runs, finished or not: those asked for, or all that stand for themselves."""
-    from affcli.report.figures.learning import MOST_CURVES
-
     if ids:
         runs = [store.learning_run(one) for one in dict.fromkeys(ids)]
     else:
@@ -273,9 +275,10 @@ def _runs_to_draw(
                 f"no learning runs but of robots: --session {reproduced[-1].id} draws these"
             )
         learned_runs(store, tools[0] if tools else None, database)
-    if len(runs) > MOST_CURVES:
+    most = figures.learning.MOST_CURVES
+    if len(runs) > most:
         raise UsageError(
-            f"{len(runs)} runs are more than the {MOST_CURVES} lines that can be told apart; "
+            f"{len(runs)} runs are more than the {most} lines that can be told apart; "
             "choose with --run or --tool"
         )
     return runs

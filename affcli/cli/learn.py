@@ -4,51 +4,59 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from affcli import lab
+from affcli.cli.database import opened
 from affcli.cli.options import (
     DEFAULT_DATABASE,
     AsJson,
-    Changes,
     Config,
     Database,
     Resume,
     Seed,
     Sensor,
-    checked_count,
+    Tools,
+    check_count,
+    check_if_given,
     checked_hours,
-    checked_seed,
-    checked_sensor,
-    checked_tools,
 )
-from affcli.cli.terminal import now, progress, say, show, show_json
+from affcli.cli.terminal import now, progress, say, show_either
+from affcli.config import load_settings, with_sensor
 from affcli.core.tool import TOOL_PARTS
-from affcli.core.trial import MOST_BEHAVIORS
+from affcli.core.trial import MOST_BEHAVIORS, LearningSpec
 from affcli.errors import UsageError
+from affcli.report.learning import groups_json, groups_table, run_json, summary
 
 if TYPE_CHECKING:
-    from affcli.core.trial import LearningSpec
-    from affcli.lab.learning import Learned
     from affcli.store import LearningRunInfo, Store
 
 
 def learn(
     *,
-    tool: Annotated[
-        list[str] | None,
-        typer.Option("--tool", help="A tool; give it several times for several.", metavar="NAME"),
-    ] = None,
+    tool: Tools = None,
     all_tools: Annotated[bool, typer.Option("--all-tools", help="All five tools.")] = False,
     hours: Annotated[
-        float | None, typer.Option("--hours", help="Robot hours; 1 if not given.", metavar="H")
+        float | None,
+        typer.Option(
+            "--hours",
+            help="Robot hours; 1 if not given.",
+            metavar="H",
+            callback=check_if_given(checked_hours),
+        ),
     ] = None,
     behaviors: Annotated[
-        int | None, typer.Option("--behaviors", help="Instead of hours.", metavar="N")
+        int | None,
+        typer.Option(
+            "--behaviors",
+            help="Instead of hours.",
+            metavar="N",
+            callback=check_count("--behaviors", MOST_BEHAVIORS),
+        ),
     ] = None,
     seed: Seed = 0,
     sensor: Sensor = None,
     resume: Resume = False,
     database: Database = DEFAULT_DATABASE,
     config: Config = None,
-    changes: Changes = None,
     as_json: AsJson = False,
 ) -> None:
     """Let a robot babble with a tool and fill its affordance table.
@@ -58,56 +66,40 @@ def learn(
     """
     if all_tools and tool:
         raise UsageError("give --tool or --all-tools, not both")
-    names = list(TOOL_PARTS) if all_tools else checked_tools(tool or ())
+    names = list(TOOL_PARTS) if all_tools else list(tool or ())
     if not names and not resume:
         raise UsageError(f"which tool? give --tool {'|'.join(TOOL_PARTS)}, or --all-tools")
-    own = (hours, behaviors, seed, sensor, config, changes)
-    if not names and own != (None, None, 0, None, None, None):
+    if not names and (hours, behaviors, seed, sensor, config) != (None, None, 0, None, None):
         raise UsageError("--resume alone: an interrupted run has its own hours, seed and settings")
     if hours is not None and behaviors is not None:
         raise UsageError("give --hours or --behaviors, not both")
-    if behaviors is not None:
-        checked_count("--behaviors", behaviors, MOST_BEHAVIORS)
-    else:
-        hours = checked_hours(1.0 if hours is None else hours)
-    checked_seed(seed)
-    kind = checked_sensor(sensor)
+    if behaviors is None and hours is None:
+        hours = 1.0
 
-    from affcli.config import load_settings, with_sensor
-    from affcli.core.trial import LearningSpec
-    from affcli.lab.sensing import require_sensor
-    from affcli.report.learning import groups_json, groups_table, run_json
-    from affcli.store import open_store
-
-    settings = with_sensor(load_settings(config, changes or ()), kind)
-    require_sensor(settings)
+    settings = with_sensor(load_settings(config), sensor)
+    lab.sensing.require_sensor(settings)
     text = settings.to_json()
     specs = [LearningSpec(name, seed, 0, hours, behaviors, text) for name in names]
-    with open_store(database, create=bool(names), write=True) as store:
+    with opened(database, create=bool(names), write=True) as store:
         if not names:
             specs = [run.spec for run in store.learning_runs(status="running")]
             if not specs:
                 raise UsageError(f"nothing to resume in {database}; learn a tool: --tool t-hook")
         results = [_learn(store, spec) for spec in specs]
         groups = [store.behavior_groups(learned.info.id) for learned in results]
-    if as_json:
-        show_json(
-            [
-                {**run_json(learned.info), "new": learned.new, "groups": groups_json(group)}
-                for learned, group in zip(results, groups, strict=True)
-            ]
-        )
-        return
-    show(
-        *(groups_table(learned.info, group) for learned, group in zip(results, groups, strict=True))
+    found = list(zip(results, groups, strict=True))
+    show_either(
+        as_json=as_json,
+        value=lambda: [
+            {**run_json(learned.info), "new": learned.new, "groups": groups_json(group)}
+            for learned, group in found
+        ],
+        tables=lambda: [groups_table(learned.info, group) for learned, group in found],
     )
 
 
-def _learn(store: "Store", spec: "LearningSpec") -> "Learned":
+def _learn(store: "Store", spec: LearningSpec) -> "lab.learning.Learned":
     """Run one learning run with progress on stderr; say what it gave."""
-    from affcli.lab.learning import learn as learn_run
-    from affcli.report.learning import summary
-
     goal = 3600.0 * spec.hours if spec.hours is not None else float(spec.behaviors or 0)
     with progress(spec.tool, goal) as bar:
 
@@ -116,7 +108,7 @@ def _learn(store: "Store", spec: "LearningSpec") -> "Learned":
             done = info.robot_seconds if spec.hours is not None else info.behaviors
             bar.update(min(done, goal), summary(info))
 
-        learned = learn_run(store, spec, now, update)
+        learned = lab.learning.learn(store, spec, now, update)
     info = learned.info
     verb = "learned" if learned.new else "already learned, nothing to do:"
     say(f"{verb} {spec.tool} (run {info.id}, seed {spec.seed}): {summary(info)}")

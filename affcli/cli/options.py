@@ -1,10 +1,14 @@
-"""Options that several commands share, and the checks of what a user wrote."""
+"""Options that several commands share, each defined once, with the check of what a user gave.
+
+An option's check runs when the command line is read, before the command: what a command gets is
+right. An option that only one command has stands in that command's file.
+"""
 
 import difflib
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -19,54 +23,12 @@ MOST_TRIES = 100_000
 MOST_WORKERS = 256
 SHORTEST, LONGEST = 1e-3, 1e4
 """No length of this laboratory lies beyond them."""
-
-# readable=False: whether a file can be read is for those to say who read it, with their exit code.
-Database = Annotated[
-    Path,
-    typer.Option(
-        "--db", envvar="AFFCLI_DB", help="The SQLite file.", metavar="FILE", readable=False
-    ),
-]
-DEFAULT_DATABASE = Path("affcli.db")
-
-AsJson = Annotated[bool, typer.Option("--json", help="Write JSON to stdout.")]
-Seed = Annotated[int, typer.Option("--seed", help="0 to 2^63 - 1.", metavar="N")]
-Config = Annotated[
-    Path | None,
-    typer.Option(
-        "--config", help="A TOML file of settings that differ.", metavar="FILE", readable=False
-    ),
-]
-Changes = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set", help="One setting; several times for several.", metavar="SECTION.KEY=VALUE"
-    ),
-]
-Force = Annotated[bool, typer.Option("--force", help="Write over existing files.")]
-Resume = Annotated[
-    bool,
-    typer.Option("--resume", help="Go on with what was interrupted; alone, with all of it."),
-]
-Sensor = Annotated[
-    str | None,
-    typer.Option("--sensor", help="noisy (the default), exact or camera.", metavar="KIND"),
-]
-TrialSensor = Annotated[
-    str | None,
-    typer.Option("--sensor", help="noisy, exact or camera; else that of learning.", metavar="KIND"),
-]
+FIGURE_ENDINGS = (".png", ".svg", ".pdf")
+"""Endings of the files that a figure can be."""
 
 
-def with_database(command: str, database: Path) -> str:
-    """Return a command to suggest, with the database named when it is not the usual one."""
-    return command if database == DEFAULT_DATABASE else f"{command} --db {one_line(database)}"
-
-
-def checked_sensor(kind: str | None) -> SensorKind | None:
-    """Return the kind of sensor asked for, None for none; UsageError when there is none such."""
-    if kind is None:
-        return None
+def checked_sensor(kind: str) -> SensorKind:
+    """Return the kind of sensor asked for; UsageError when there is none such."""
     known = one_of("sensor", kind, SENSOR_KINDS)
     return next(one for one in SENSOR_KINDS if one == known)
 
@@ -118,9 +80,9 @@ def checked_tool(name: str) -> str:
     return one_of("tool", name, list(TOOL_PARTS))
 
 
-def checked_tools(names: Iterable[str]) -> list[str]:
+def checked_tools(names: Iterable[str] | None) -> list[str]:
     """Return tool names, each given by itself or several with commas, without repeats."""
-    single = [part for name in names for part in name.split(",")]
+    single = [part for name in names or () for part in name.split(",")]
     return list(dict.fromkeys(checked_tool(name) for name in single))
 
 
@@ -142,3 +104,100 @@ def one_of(kind: str, value: str, known: Sequence[str]) -> str:
         return value
     near = difflib.get_close_matches(value[:40].lower(), known, n=3, cutoff=0.4) or known
     raise UsageError(f"no {kind} {one_line(value, 60)!r}; did you mean {' or '.join(near)}?")
+
+
+def check_if_given(check: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """Return a check for an option that may be left out."""
+    return lambda value: None if value is None else check(value)
+
+
+def check_count(option: str, most: int = LARGEST_ID) -> Callable[[Any], Any]:
+    """Return a check for an option that is a count, or a number in the database."""
+    return check_if_given(lambda count: checked_count(option, count, most))
+
+
+# readable=False: whether a file can be read is for those to say who read it, with their exit code.
+Database = Annotated[
+    Path,
+    typer.Option(
+        "--db", envvar="AFFCLI_DB", help="The SQLite file.", metavar="FILE", readable=False
+    ),
+]
+DEFAULT_DATABASE = Path("affcli.db")
+
+AsJson = Annotated[bool, typer.Option("--json", help="Write JSON to stdout.")]
+Seed = Annotated[
+    int, typer.Option("--seed", help="0 to 2^63 - 1.", metavar="N", callback=checked_seed)
+]
+Config = Annotated[
+    Path | None,
+    typer.Option(
+        "--config", help="A TOML file of settings that differ.", metavar="FILE", readable=False
+    ),
+]
+Force = Annotated[bool, typer.Option("--force", help="Write over existing files.")]
+Resume = Annotated[
+    bool,
+    typer.Option("--resume", help="Go on with what was interrupted; alone, with all of it."),
+]
+Sensor = Annotated[
+    SensorKind | None,
+    typer.Option(
+        "--sensor",
+        help="noisy (the default), exact or camera.",
+        metavar="KIND",
+        parser=checked_sensor,
+    ),
+]
+TrialSensor = Annotated[
+    SensorKind | None,
+    typer.Option(
+        "--sensor",
+        help="noisy, exact or camera; else that of learning.",
+        metavar="KIND",
+        parser=checked_sensor,
+    ),
+]
+Tools = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--tool",
+        help="A tool; give it several times for several.",
+        metavar="NAME",
+        callback=checked_tools,
+    ),
+]
+LearnedTool = Annotated[
+    str,
+    typer.Option("--tool", help="What was learned.", metavar="NAME", callback=checked_tool),
+]
+DEFAULT_TOOL = "t-hook"
+Becomes = Annotated[
+    str,
+    typer.Option(
+        "--becomes", help="The shape that is left.", metavar="NAME", callback=checked_tool
+    ),
+]
+DEFAULT_BROKEN = "l-hook"
+HeldShape = Annotated[
+    str | None,
+    typer.Option(
+        "--shape",
+        help="What the robot truly holds, painted alike.",
+        metavar="NAME",
+        callback=check_if_given(checked_tool),
+    ),
+]
+Pushes = Annotated[
+    int,
+    typer.Option(
+        "--pushes", help="How many.", metavar="N", callback=check_count("--pushes", MOST_TRIES)
+    ),
+]
+Run = Annotated[
+    int | None,
+    typer.Option("--run", help="A learning run's id.", metavar="ID", callback=check_count("--run")),
+]
+FigureOut = Annotated[
+    Path, typer.Option("--out", help="The figure: *.png, *.svg or *.pdf.", metavar="FILE")
+]

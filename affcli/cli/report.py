@@ -6,18 +6,15 @@ from typing import Annotated
 
 import typer
 
+from affcli import lab
+from affcli.cli.database import opened
 from affcli.cli.files import require_new, save
-from affcli.cli.options import (
-    DEFAULT_DATABASE,
-    LARGEST_ID,
-    AsJson,
-    Database,
-    Force,
-    checked_count,
-)
-from affcli.cli.terminal import progress, say, show, show_json
+from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database, Force, check_count
+from affcli.cli.terminal import progress, say, show_either
 from affcli.core.trial import MOST_ROBOTS
 from affcli.errors import BadInputError, UsageError, one_line
+from affcli.report import page
+from affcli.report.overview import overview_json, overview_tables
 
 Html = Annotated[
     Path | None, typer.Option("--html", help="Write a page with replays, *.html.", metavar="FILE")
@@ -26,7 +23,12 @@ Robot = Annotated[
     int | None,
     typer.Option("--robot", help="Whose trials: of a reproduction, from 0.", metavar="N"),
 ]
-Session = Annotated[int | None, typer.Option("--session", help="Which reproduction.", metavar="ID")]
+Session = Annotated[
+    int | None,
+    typer.Option(
+        "--session", help="Which reproduction.", metavar="ID", callback=check_count("--session")
+    ),
+]
 
 
 def report(
@@ -52,37 +54,25 @@ def report(
         raise UsageError("--html or --json: give one of them")
     if robot is not None and not 0 <= robot < MOST_ROBOTS:
         raise BadInputError(f"--robot {one_line(robot, 40)}: must lie in 0 to {MOST_ROBOTS - 1}")
-    if session is not None:
-        checked_count("--session", session, LARGEST_ID)
     require_new(html, force=force, endings=(".html", ".htm"))
     _as_page(html, robot, session, database)
 
 
 def _on_terminal(database: Path, *, as_json: bool) -> None:
     """Show what the database holds as tables or JSON."""
-    from affcli.lab.overview import overview_of
-    from affcli.report.overview import overview_json, overview_tables
-    from affcli.store import open_store
-
-    with open_store(database, create=False, write=False) as store:
-        overview = overview_of(store)
-    if as_json:
-        show_json(overview_json(overview))
-    else:
-        show(*overview_tables(overview))
+    with opened(database) as store:
+        overview = lab.overview.overview_of(store)
+    show_either(
+        as_json=as_json,
+        value=lambda: overview_json(overview),
+        tables=lambda: overview_tables(overview),
+    )
 
 
 def _as_page(html: Path, robot: int | None, session: int | None, database: Path) -> None:
     """Write the page."""
-    from affcli.lab.page import content_of
-    from affcli.report.page.rendering import render
-    from affcli.store import open_store
-
-    with (
-        open_store(database, create=False, write=False) as store,
-        progress("replaying", 1.0) as bar,
-    ):
-        content = content_of(
+    with opened(database) as store, progress("replaying", 1.0) as bar:
+        content = lab.page.content_of(
             store,
             robot,
             session,
@@ -93,7 +83,7 @@ def _as_page(html: Path, robot: int | None, session: int | None, database: Path)
     for option, number in (("--session", session), ("--robot", robot)):
         words += [] if number is None else [option, str(number)]
     command = one_line(shlex.join(words), 1000)
-    save(html, render(content, command).encode("utf-8", "backslashreplace"))
+    save(html, page.rendering.render(content, command).encode("utf-8", "backslashreplace"))
     differing = sum(bool(replay.differences) for replay in content.replays)
     say(f"{content.robot}, {len(content.replays)} trials to replay: {one_line(html)}")
     if differing:

@@ -5,22 +5,23 @@ from typing import Annotated
 
 import typer
 
+from affcli import lab
+from affcli.cli.database import opened
 from affcli.cli.options import (
     DEFAULT_DATABASE,
     MOST_WORKERS,
     AsJson,
-    Changes,
     Config,
     Database,
     Resume,
     Seed,
     Sensor,
-    checked_count,
-    checked_seed,
-    checked_sensor,
+    check_count,
 )
-from affcli.cli.terminal import now, progress, say, show, show_json
+from affcli.cli.terminal import now, progress, say, show_either
+from affcli.config import load_settings, settings_from_json, with_sensor
 from affcli.core.trial import MOST_ROBOTS
+from affcli.report.reproduction import reproduction_json, reproduction_tables
 
 FEW_ROBOTS = 20
 
@@ -28,18 +29,28 @@ FEW_ROBOTS = 20
 def reproduce(
     *,
     robots: Annotated[
-        int | None, typer.Option("--robots", help="How many robots; 20 if not given.", metavar="N")
+        int | None,
+        typer.Option(
+            "--robots",
+            help="How many robots; 20 if not given.",
+            metavar="N",
+            callback=check_count("--robots", MOST_ROBOTS),
+        ),
     ] = None,
     seed: Seed = 0,
     sensor: Sensor = None,
     resume: Resume = False,
     workers: Annotated[
         int | None,
-        typer.Option("--workers", help="Processes; one a core if not given.", metavar="N"),
+        typer.Option(
+            "--workers",
+            help="Processes; one a core if not given.",
+            metavar="N",
+            callback=check_count("--workers", MOST_WORKERS),
+        ),
     ] = None,
     database: Database = DEFAULT_DATABASE,
     config: Config = None,
-    changes: Changes = None,
     as_json: AsJson = False,
 ) -> None:
     """Let many robots learn the five tools and do the paper's 80 + 16 trials; compare.
@@ -47,43 +58,33 @@ def reproduce(
     The result is the same for any number of workers. An interrupted reproduction goes on when the
     same command is given again, as does the latest one with --resume alone.
     """
-    own = (robots, seed, sensor, config, changes) != (None, 0, None, None, None)
+    own = (robots, seed, sensor, config) != (None, 0, None, None)
     if robots is None:
         robots = FEW_ROBOTS
-    checked_count("--robots", robots, MOST_ROBOTS)
-    checked_seed(seed)
-    kind = checked_sensor(sensor)
     if workers is None:
         workers = min(len(os.sched_getaffinity(0)), MOST_WORKERS) if _has_affinity() else 1
-    checked_count("--workers", workers, MOST_WORKERS)
 
-    from affcli.config import load_settings, settings_from_json, with_sensor
-    from affcli.lab.overview import reproduction_of
-    from affcli.lab.reproduction import reproduce as run_reproduction
-    from affcli.lab.sensing import require_sensor
-    from affcli.report.reproduction import reproduction_json, reproduction_tables
-    from affcli.store import open_store
-
-    settings = with_sensor(load_settings(config, changes or ()), kind)
-    require_sensor(settings)
-    with open_store(database, create=True, write=True) as store:
+    settings = with_sensor(load_settings(config), sensor)
+    lab.sensing.require_sensor(settings)
+    with opened(database, create=True, write=True) as store:
         if resume and not own:
             begun = [s for s in store.sessions("reproduce") if s.status == "running"]
             if begun:
                 settings = settings_from_json(begun[-1].settings)
                 robots, seed = begun[-1].robots, begun[-1].seed
-                require_sensor(settings)
-        events = run_reproduction(store, settings, robots, seed, workers, now)
+                lab.sensing.require_sensor(settings)
+        events = lab.reproduction.reproduce(store, settings, robots, seed, workers, now)
         session = next(events)
         with progress("reproducing", robots) as bar:
             for saved in events:
                 bar.update(saved, f"{saved} of {robots} robots")
-        result = reproduction_of(store, session, robots)
+        result = lab.overview.reproduction_of(store, session, robots)
     say(f"session {session}: {robots} robots, seed {seed}, saved in {database}")
-    if as_json:
-        show_json(reproduction_json(result))
-    else:
-        show(*reproduction_tables(result))
+    show_either(
+        as_json=as_json,
+        value=lambda: reproduction_json(result),
+        tables=lambda: reproduction_tables(result),
+    )
 
 
 def _has_affinity() -> bool:

@@ -7,8 +7,10 @@ from typing import Annotated, Any
 import typer
 
 from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database
-from affcli.cli.terminal import say, show, show_json, show_text
+from affcli.cli.terminal import say, show_json, show_rows, show_text
 from affcli.errors import UsageError, one_line
+from affcli.report.csv_table import csv_text
+from affcli.store import run_sql
 
 MOST_CELLS = 20_000
 """Of a drawn table: these take 2 s; 10,000 rows of all columns of two tables would take minutes."""
@@ -29,20 +31,14 @@ def sql(
     if as_json and as_csv:
         raise UsageError("give --json or --csv, not both")
 
-    from affcli.store import run_sql
-
     result = run_sql(database, query)
     columns, rows, cut = result.columns, result.rows, result.truncated
     if as_json:
         keys = _distinct(columns)
         show_json([dict(zip(keys, map(_plain, row), strict=True)) for row in rows])
     elif as_csv:
-        from affcli.report.csv_table import csv_text
-
         show_text(csv_text(_distinct(columns), rows))
     else:
-        from affcli.report.sheet import Sheet
-
         drawn = max(1, MOST_CELLS // len(columns))
         rows, cut = rows[:drawn], cut or len(rows) > drawn
         names = tuple(map(one_line, _distinct(columns)))
@@ -51,10 +47,12 @@ def sql(
             for name, values in zip(names, zip(*rows, strict=True), strict=False)
             if all(value is None or isinstance(value, int | float) for value in values)
         }
-        table = Sheet(names, left=tuple(n for n in names if n not in numbers), wraps=False)
-        for row in rows:
-            table.add(*("" if value is None else one_line(_plain(value)) for value in row))
-        show(table)
+        show_rows(
+            names,
+            (["" if value is None else one_line(_plain(value)) for value in row] for row in rows),
+            left=tuple(n for n in names if n not in numbers),
+            wraps=False,
+        )
     if not rows:
         say("no rows")
     if cut:

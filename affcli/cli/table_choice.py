@@ -7,10 +7,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from affcli.cli.options import LARGEST_ID, checked_count, checked_tool, one_of
-from affcli.cli.solve import learned_runs
+from affcli import lab
+from affcli import store as stored
+from affcli.behaviors.registry import paper_behaviors
+from affcli.cli.database import learned_runs
+from affcli.cli.options import check_count, check_if_given, checked_tool, one_of
 from affcli.core.behavior import BehaviorCall
 from affcli.core.tool import TOOL_PARTS, ToolName
+from affcli.core.workspace import Workspace
 from affcli.errors import BadInputError, UsageError, one_line
 
 if TYPE_CHECKING:
@@ -19,11 +23,22 @@ if TYPE_CHECKING:
     from affcli.store import Comparison, LearningRunInfo, RowFilter, Store
 
 Tool = Annotated[
-    str | None, typer.Option("--tool", help="Rows of this tool alone.", metavar="NAME")
+    str | None,
+    typer.Option(
+        "--tool",
+        help="Rows of this tool alone.",
+        metavar="NAME",
+        callback=check_if_given(checked_tool),
+    ),
 ]
 Run = Annotated[
     int | None,
-    typer.Option("--run", help="Of this learning run, not the latest ones.", metavar="ID"),
+    typer.Option(
+        "--run",
+        help="Of this learning run, not the latest ones.",
+        metavar="ID",
+        callback=check_count("--run"),
+    ),
 ]
 AllRuns = Annotated[
     bool,
@@ -48,7 +63,13 @@ Region = Annotated[
     ),
 ]
 Limit = Annotated[
-    int | None, typer.Option("--limit", help="No more than so many, the oldest.", metavar="N")
+    int | None,
+    typer.Option(
+        "--limit",
+        help="No more than so many, the oldest.",
+        metavar="N",
+        callback=check_count("--limit"),
+    ),
 ]
 
 _NUMBER = r"(\d+(?:\.\d+)?|\.\d+)"
@@ -80,9 +101,7 @@ class Choice:
 
     def filter_for(self, runs: "Sequence[LearningRunInfo]") -> "RowFilter":
         """Return what the database can be asked for; it knows no regions."""
-        from affcli.store import RowFilter
-
-        return RowFilter(
+        return stored.RowFilter(
             runs=None if self.all_runs else tuple(run.id for run in runs),
             tool=self.tool,
             behavior=self.behavior,
@@ -104,21 +123,19 @@ def checked_choice(
     """Return what was asked for.
 
     Raises:
-        UsageError: an unknown tool or behavior; a run beside --all-runs.
-        BadInputError: a number out of range, a probability that cannot be read.
+        UsageError: an unknown behavior; a run beside --all-runs.
+        BadInputError: a probability that cannot be read.
     """
-    if run is not None:
-        checked_count("--run", run, LARGEST_ID)
-        if all_runs:
-            raise UsageError("give --run ID or --all-runs, not both")
+    if run is not None and all_runs:
+        raise UsageError("give --run ID or --all-runs, not both")
     return Choice(
-        tool=None if tool is None else checked_tool(tool),
+        tool=tool,
         run=run,
         all_runs=all_runs,
         behavior=None if behavior is None else checked_behavior(behavior),
         probability=() if probability is None else checked_probability(probability),
         region=region,
-        limit=None if limit is None else checked_count("--limit", limit, LARGEST_ID),
+        limit=limit,
     )
 
 
@@ -128,9 +145,6 @@ def checked_behavior(text: str) -> BehaviorCall:
     Raises:
         UsageError: there is none such; the message has the nearest.
     """
-    from affcli.behaviors.registry import paper_behaviors
-    from affcli.core.workspace import Workspace
-
     workspace = Workspace()
     calls = paper_behaviors(workspace.arm, workspace.motion, workspace.tools).exploratory
     known = {str(call): call for named in calls for call in (BehaviorCall(named.name, ()), named)}
@@ -185,9 +199,7 @@ def _runs(store: "Store", choice: Choice, database: Path) -> "Sequence[LearningR
                 "leave out --tool"
             )
         return [run]
-    from affcli.lab.table import every_run
-
-    runs = [run for run in every_run(store) if choice.tool in (None, run.spec.tool)]
+    runs = [run for run in lab.table.every_run(store) if choice.tool in (None, run.spec.tool)]
     if choice.all_runs and runs:
         return runs
     if runs and all(run.session_id is not None for run in runs):

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from affcli import lab, report
+from affcli.cli.database import opened
 from affcli.cli.files import require_new, save
 from affcli.cli.options import DEFAULT_DATABASE, Database, Force, one_of
 from affcli.cli.table_choice import (
@@ -22,11 +24,12 @@ from affcli.cli.table_choice import (
 )
 from affcli.cli.terminal import say, show_text
 from affcli.errors import BadInputError, UsageError, one_line
+from affcli.report.csv_table import csv_lines
+from affcli.report.json_table import json_lines
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from affcli.lab.table import Write
     from affcli.store import Column, Relation
 
 RELATIONS: "tuple[Relation, ...]" = ("rows", "behaviors", "trials", "steps")
@@ -81,13 +84,10 @@ def export(
         if out.exists() and database.exists() and out.samefile(database):
             raise BadInputError(f"{one_line(out)}: the database itself; name another file")
 
-    from affcli.lab.table import taken_out
-    from affcli.store import open_store
-
-    with open_store(database, create=False, write=False) as store:
+    with opened(database) as store:
         runs = chosen_runs(store, choice, database)
         wanted = choice.filter_for(runs)
-        data, count = taken_out(store, relation, runs, wanted, region, write)
+        data, count = lab.table.taken_out(store, relation, runs, wanted, region, write)
     counted = f"{count or 'no'} {what if count != 1 else what[:-1]}"
     if out != STDOUT:
         save(out, data)
@@ -98,7 +98,7 @@ def export(
             say(counted)
 
 
-def _checked_format(kind: str | None, out: Path) -> "Write[bytes]":
+def _checked_format(kind: str | None, out: Path) -> "lab.table.Write[bytes]":
     """Return what writes the format that was named, or else that of the file's ending.
 
     Raises:
@@ -121,15 +121,11 @@ def _checked_format(kind: str | None, out: Path) -> "Write[bytes]":
 
 def _csv(columns: "Sequence[Column]", rows: "Iterable[tuple[Any, ...]]") -> bytes:
     """Write CSV."""
-    from affcli.report.csv_table import csv_lines
-
     return _encoded(csv_lines([column.name for column in columns], rows))
 
 
 def _json(columns: "Sequence[Column]", rows: "Iterable[tuple[Any, ...]]") -> bytes:
     """Write JSON."""
-    from affcli.report.json_table import json_lines
-
     return _encoded(json_lines([column.name for column in columns], rows))
 
 
@@ -143,9 +139,7 @@ def _encoded(lines: "Iterable[str]") -> bytes:
 
 def _parquet(columns: "Sequence[Column]", rows: "Iterable[tuple[Any, ...]]") -> bytes:
     """Write Parquet."""
-    from affcli.report.parquet_table import parquet_bytes
-
-    return parquet_bytes(columns, rows)
+    return report.parquet_table.parquet_bytes(columns, rows)
 
 
-FORMATS: "dict[str, Write[bytes]]" = {"csv": _csv, "json": _json, "parquet": _parquet}
+FORMATS: "dict[str, lab.table.Write[bytes]]" = {"csv": _csv, "json": _json, "parquet": _parquet}

@@ -1,5 +1,7 @@
 """``affcli table list``: the rows of the affordance tables, filtered."""
 
+from affcli import lab
+from affcli.cli.database import opened
 from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database
 from affcli.cli.table_choice import (
     AllRuns,
@@ -14,6 +16,7 @@ from affcli.cli.table_choice import (
 )
 from affcli.cli.terminal import say, show, show_json
 from affcli.errors import one_line
+from affcli.report.rows import rows_json, rows_table
 
 
 def list_rows(
@@ -42,13 +45,9 @@ def list_rows(
         region=region,
         limit=limit,
     )
-    from affcli.lab.table import listed_rows
-    from affcli.report.rows import rows_json, rows_table
-    from affcli.store import open_store
-
-    with open_store(database, create=False, write=False) as store:
+    with opened(database) as store:
         runs = chosen_runs(store, choice, database)
-        rows = listed_rows(store, runs, choice.filter_for(runs), region)
+        rows = lab.table.listed_rows(store, runs, choice.filter_for(runs), region)
     if as_json:
         show_json(rows_json(rows))
     else:

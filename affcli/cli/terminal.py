@@ -5,6 +5,7 @@ import json
 import math
 import os
 import sys
+import time
 from collections import deque
 from contextlib import contextmanager
 from datetime import UTC, datetime
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 from affcli.errors import AffcliError, one_line
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from rich.console import Console, RenderableType
     from rich.progress import Progress, TaskID
@@ -75,14 +76,42 @@ def show_json(value: Any) -> None:
     show_text(json.dumps(_finite(value), indent=2) + "\n")
 
 
+def show_either(
+    *,
+    as_json: bool,
+    value: "Callable[[], Any]",
+    tables: "Callable[[], Iterable[RenderableType]]",
+) -> None:
+    """Write a result to stdout: its value as JSON, or its tables."""
+    if as_json:
+        show_json(value())
+    else:
+        show(*tables())
+
+
+def show_rows(
+    columns: tuple[str, ...],
+    rows: "Iterable[Iterable[str]]",
+    *,
+    left: tuple[str, ...] = (),
+    wraps: bool = True,
+    records: bool = False,
+) -> None:
+    """Write rows of text to stdout under headings (see `report.sheet.Sheet`)."""
+    from affcli.report.sheet import Sheet
+
+    sheet = Sheet(columns, left=left, wraps=wraps, records=records)
+    for row in rows:
+        sheet.add(*row)
+    show(sheet)
+
+
 def play(pages: "Iterable[RenderableType]", pages_a_second: float) -> None:
     """Show pages one after the other in one place of the terminal; the last one stays.
 
     Pages for which there is no time are left out, but for the last. A terminal that cannot go back
     (``TERM=dumb``) shows the last alone.
     """
-    import time
-
     from rich.live import Live
 
     console = _console(sys.stdout)

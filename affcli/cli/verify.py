@@ -4,34 +4,36 @@ from typing import Annotated
 
 import typer
 
+from affcli import lab
+from affcli.cli.database import learned_runs, opened
 from affcli.cli.options import (
     DEFAULT_DATABASE,
+    DEFAULT_TOOL,
     MOST_TRIES,
     AsJson,
     Database,
+    HeldShape,
+    LearnedTool,
     Seed,
     TrialSensor,
-    checked_count,
-    checked_seed,
-    checked_sensor,
-    checked_tool,
+    check_count,
 )
-from affcli.cli.solve import learned_runs
-from affcli.cli.terminal import now, progress, show, show_json
+from affcli.cli.terminal import now, progress, show_either
+from affcli.report.verification import Verification, verification_json, verification_tables
 
 
 def verify(
     *,
-    tool: Annotated[str, typer.Option("--tool", help="What was learned.", metavar="NAME")] = (
-        "t-hook"
-    ),
-    shape: Annotated[
-        str | None,
-        typer.Option("--shape", help="What the robot truly holds, painted alike.", metavar="NAME"),
-    ] = None,
+    tool: LearnedTool = DEFAULT_TOOL,
+    shape: HeldShape = None,
     rows: Annotated[
         int | None,
-        typer.Option("--rows", help="How many to try; each once if not given.", metavar="N"),
+        typer.Option(
+            "--rows",
+            help="How many to try; each once if not given.",
+            metavar="N",
+            callback=check_count("--rows", MOST_TRIES),
+        ),
     ] = None,
     until_verdict: Annotated[
         bool, typer.Option("--until-verdict", help="Stop as soon as it can be told.")
@@ -49,28 +51,20 @@ def verify(
     Rows of the latest learning run are executed again, in random order, each in a fresh situation
     that matches its start. Nothing is written unless told to --update.
     """
-    checked_tool(tool)
-    held = tool if shape is None else checked_tool(shape)
-    if rows is not None:
-        checked_count("--rows", rows, MOST_TRIES)
-    checked_seed(seed)
-    kind = checked_sensor(sensor)
-
-    from affcli.lab.verifying import verification_spec
-    from affcli.lab.verifying import verify as verify_table
-    from affcli.report.verification import Verification, verification_json, verification_tables
-    from affcli.store import open_store
-
-    with open_store(database, create=False, write=update) as store:
+    held = shape or tool
+    with opened(database, write=update) as store:
         (run,) = learned_runs(store, tool, database)
-        spec = verification_spec(run, held, seed, kind, rows, until_verdict=until_verdict)
+        spec = lab.verifying.verification_spec(
+            run, held, seed, sensor, rows, until_verdict=until_verdict
+        )
         tries = []
         with progress(f"{tool}, row by row", spec.tries) as bar:
-            for one in verify_table(store, run, spec, now, update=update):
+            for one in lab.verifying.verify(store, run, spec, now, update=update):
                 tries.append(one)
                 bar.update(len(tries), f"{len(tries)} of {spec.tries} tries")
     found = Verification(run.id, spec, run.rows, update, tuple(tries))
-    if as_json:
-        show_json(verification_json(found))
-    else:
-        show(*verification_tables(found))
+    show_either(
+        as_json=as_json,
+        value=lambda: verification_json(found),
+        tables=lambda: verification_tables(found),
+    )

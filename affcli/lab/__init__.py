@@ -1,1 +1,32 @@
-"""The composition root: wires the rooms; one file a use case, each with one function to call."""
+"""The composition root: wires the rooms; one file a use case, each with one function to call.
+
+Each is imported when it is first used: a command's help does without SQLAlchemy and pymunk.
+"""
+
+from typing import TYPE_CHECKING
+
+from affcli.lazy import lazy_modules
+
+if TYPE_CHECKING:
+    from affcli.lab import adaptation as adaptation
+    from affcli.lab import affordance_views as affordance_views
+    from affcli.lab import bench as bench
+    from affcli.lab import breaking as breaking
+    from affcli.lab import film_strips as film_strips
+    from affcli.lab import filming as filming
+    from affcli.lab import learning as learning
+    from affcli.lab import learning_curves as learning_curves
+    from affcli.lab import overview as overview
+    from affcli.lab import page as page
+    from affcli.lab import photographs as photographs
+    from affcli.lab import predicting as predicting
+    from affcli.lab import replaying as replaying
+    from affcli.lab import reproduction as reproduction
+    from affcli.lab import results as results
+    from affcli.lab import sensing as sensing
+    from affcli.lab import solving as solving
+    from affcli.lab import table as table
+    from affcli.lab import verifying as verifying
+    from affcli.lab import viewing as viewing
+
+__getattr__ = lazy_modules(__name__)

@@ -5,9 +5,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import typer
 
-from affcli.cli.app import app
+from affcli.cli.app import program
 from tests.cli.program import affcli, names_in, one_printable_line, refused
 
 DROP = "x'); DROP TABLE learning_run; --"
@@ -22,12 +21,11 @@ def commands(
     group: Any = None, path: tuple[str, ...] = ()
 ) -> Iterator[tuple[tuple[str, ...], Any]]:
     """Yield every command with the words that call it."""
-    group = group or typer.main.get_command(app)
-    for name, command in group.commands.items():
+    for name, command in (group or program).commands.items():
         if hasattr(command, "commands"):
             yield from commands(command, (*path, name))
         else:
-            yield (*path, name), command
+            yield (*path, name), command.loaded()
 
 
 def names_of(command: Any) -> list[str]:

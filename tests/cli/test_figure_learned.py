@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from affcli.cli.figure_learned import ENDINGS
+from affcli.cli.options import FIGURE_ENDINGS
 from affcli.report.figures.canvas import FORMATS
 from tests.cli.program import Arg, Ended, done, names_in, refused, rows
 from tests.cli.without import without
@@ -67,9 +67,9 @@ def test_figures_of_the_laboratory_need_no_database(what: str, tmp_path: Path) -
     assert names_in(tmp_path) == ["f.svg"]
 
 
-@pytest.mark.parametrize("ending", [*ENDINGS, ".PDF"])
+@pytest.mark.parametrize("ending", [*FIGURE_ENDINGS, ".PDF"])
 def test_the_ending_says_the_format(ending: str, used: Path) -> None:
-    assert set(ENDINGS) == set(FORMATS)
+    assert set(FIGURE_ENDINGS) == set(FORMATS)
     path = used.parent / f"figure{ending}"
     drawn(done("figure", "row", "2", "--out", path, "--db", used), path)
 

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
-import typer
 from hypothesis import strategies as st
 
 TOOLS = ("t-hook", "stick", "l-hook", "l-stick", "t-stick")
@@ -149,11 +148,12 @@ class CommandLine:
 @cache
 def every_command() -> tuple[Command, ...]:
     """Return every command of the program, those of its groups too."""
-    from affcli.cli.app import app
+    from affcli.cli.app import program
 
     found: list[Command] = []
 
-    def walk(command: Any, words: tuple[str, ...]) -> None:
+    def walk(listed: Any, words: tuple[str, ...]) -> None:
+        command = listed if hasattr(listed, "commands") else listed.loaded()
         params = command.params
         options = [p for p in params if p.param_type_name == "option"]
         found.append(
@@ -168,7 +168,7 @@ def every_command() -> tuple[Command, ...]:
         for name, sub in getattr(command, "commands", {}).items():
             walk(sub, (*words, name))
 
-    walk(typer.main.get_command(app), ())
+    walk(program, ())
     return tuple(found)
 
 

@@ -11,7 +11,7 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
-from affcli.cli.main import Stop
+from affcli.cli.signals import SignalHandler
 from affcli.errors import DatabaseError
 from affcli.store import Store, open_store, run_sql, upgrade
 
@@ -58,7 +58,7 @@ def wait_for_lock(path: Path) -> None:
 
     Python's own is not enough: an exception that falls into a callback is swallowed.
     """
-    Stop()
+    SignalHandler()
     with open_store(path, create=False, write=True) as store:
         ready()
         write_something(store)
