@@ -10,10 +10,10 @@ from pathlib import Path
 from affcli.errors import DatabaseError, one_line
 from affcli.store.database_file import look, opened, require_place, require_something
 from affcli.store.faults import faults_named
-from affcli.store.patience import PATIENCE, patiently
+from affcli.store.lock_retry import LONGEST_WAIT, retried
 
 
-def backup(path: Path, copy: Path, *, timeout: float = PATIENCE) -> None:
+def backup(path: Path, copy: Path, *, timeout: float = LONGEST_WAIT) -> None:
     """Write a copy of a database, of any schema revision, as it is at one moment.
 
     Others may read and write it meanwhile. The copy is checked, and appears whole or not at all,
@@ -49,7 +49,7 @@ def copy_of(driver: sqlite3.Connection, path: Path, copy: Path, timeout: float) 
     try:
         with faults_named(copy, timeout), closing(sqlite3.connect(temporary)) as target:
             # All pages in one step, under one read lock: the database at one moment.
-            patiently(lambda: driver.backup(target, pages=-1), timeout)
+            retried(lambda: driver.backup(target, pages=-1), timeout)
             # A copy of a WAL database would need two more files beside it.
             target.execute("PRAGMA journal_mode = delete")
             verdict = target.execute("PRAGMA integrity_check(1)").fetchone()[0]

@@ -12,9 +12,8 @@ from pathlib import Path
 
 from affcli.errors import DatabaseError, one_line
 from affcli.store.faults import REMEDIES, faults_named
-from affcli.store.identity import REVISION, stored_revision
-from affcli.store.patience import ATTEMPT, patiently
-from affcli.store.schema import mistyped_table
+from affcli.store.lock_retry import ATTEMPT, retried
+from affcli.store.revision import stored_revision
 
 CHECKED_UP_TO = 4 * 2**20
 """Bytes up to which the whole file is checked when it is opened, which takes some 15 ms a megabyte:
@@ -97,6 +96,24 @@ def _lacks_shared_memory(driver: sqlite3.Connection, path: Path) -> bool:
     return False
 
 
+@contextmanager
+def one_state(driver: sqlite3.Connection, path: Path, timeout: float) -> Iterator[None]:
+    """Let everything that is read in a ``with`` block be of one state of an opened file.
+
+    Raises:
+        DatabaseError: not a database, damaged, locked for longer than `timeout` seconds.
+    """
+    with faults_named(path, timeout):
+        driver.execute("BEGIN")
+        try:
+            # BEGIN takes no lock; the first read does.
+            retried(lambda: driver.execute("SELECT 1 FROM sqlite_master"), timeout)
+            yield
+        finally:
+            if driver.in_transaction:
+                driver.execute("ROLLBACK")
+
+
 def look(driver: sqlite3.Connection, path: Path, timeout: float) -> str | None:
     """Return the revision of an opened file, None when it is empty, after checking it is sound.
 
@@ -108,22 +125,10 @@ def look(driver: sqlite3.Connection, path: Path, timeout: float) -> str | None:
     Raises:
         DatabaseError: not a database, another program's, damaged, locked too long.
     """
-    with faults_named(path, timeout):
-        driver.execute("BEGIN")
-        try:
-            patiently(lambda: driver.execute("SELECT 1 FROM sqlite_master"), timeout)
-            revision = stored_revision(driver, path)
-            _require_sound(driver, path)
-            mistyped = mistyped_table(driver) if revision == REVISION else ""
-            if mistyped:
-                raise DatabaseError(
-                    f"{one_line(path)}: its {mistyped} holds a value that affcli did not write; "
-                    "restore a copy of the file"
-                )
-            return revision
-        finally:
-            if driver.in_transaction:
-                driver.execute("ROLLBACK")
+    with one_state(driver, path, timeout):
+        revision = stored_revision(driver, path)
+        _require_sound(driver, path)
+        return revision
 
 
 def require_something(revision: str | None, path: Path) -> str:

@@ -46,8 +46,6 @@ REMEDIES = {
 
 NO_TEXT = "Could not decode to UTF-8"
 """What Python's driver says, without a code, of text that is not in UTF-8."""
-NO_KEY = "foreign key mismatch"
-"""What SQLite says, with the code of any error, when a table has lost its primary key."""
 
 
 def result_code(error: BaseException) -> int:
@@ -84,8 +82,6 @@ def faults_named(path: Path, waited: float) -> Iterator[None]:
                 "a copy of the file"
             ) from error
         remedy = REMEDIES.get(code) or REMEDIES.get(code & PRIMARY)
-        if str(getattr(error, "orig", error)).startswith(NO_KEY):
-            remedy = REMEDIES[sqlite3.SQLITE_CORRUPT]
         if remedy is CLASH:
             remedy = f"{one_line(getattr(error, 'orig', error))}: {CLASH}"
         if remedy is not None:

@@ -3,10 +3,15 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from affcli.store.database_file import look, opened, require_place, require_something
-from affcli.store.faults import faults_named
-from affcli.store.identity import require_current
-from affcli.store.patience import PATIENCE
+from affcli.store.database_file import (
+    look,
+    one_state,
+    opened,
+    require_place,
+    require_something,
+)
+from affcli.store.lock_retry import LONGEST_WAIT
+from affcli.store.revision import require_current
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +67,7 @@ CHECKS = {
 """Each a query for the places where it does not hold."""
 
 
-def check(path: Path, *, timeout: float = PATIENCE) -> tuple[Finding, ...]:
+def check(path: Path, *, timeout: float = LONGEST_WAIT) -> tuple[Finding, ...]:
     """Look at the whole of a database; nothing is changed.
 
     Raises:
@@ -71,24 +76,18 @@ def check(path: Path, *, timeout: float = PATIENCE) -> tuple[Finding, ...]:
     require_place(path, create=False, write=False)
     with opened(path, "rw", timeout) as driver:
         require_current(require_something(look(driver, path, timeout), path), path)
-        with faults_named(path, timeout):
-            driver.execute("BEGIN")
-            try:
-                pages = [
-                    row[0] for row in driver.execute("PRAGMA integrity_check") if row[0] != "ok"
-                ]
-                lost = driver.execute("PRAGMA foreign_key_check").fetchall()
-                found = [
-                    Finding("every page is sound", len(pages), *map(str, pages[:1] or [""])),
-                    Finding(
-                        "every reference leads somewhere",
-                        len(lost),
-                        f"{lost[0][0]}, to {lost[0][2]}" if lost else "",
-                    ),
-                ]
-                for what, query in CHECKS.items():
-                    places = [str(row[0]) for row in driver.execute(query)]
-                    found.append(Finding(what, len(places), places[0] if places else ""))
-            finally:
-                driver.execute("ROLLBACK")
+        with one_state(driver, path, timeout):
+            pages = [row[0] for row in driver.execute("PRAGMA integrity_check") if row[0] != "ok"]
+            lost = driver.execute("PRAGMA foreign_key_check").fetchall()
+            found = [
+                Finding("every page is sound", len(pages), *map(str, pages[:1] or [""])),
+                Finding(
+                    "every reference leads somewhere",
+                    len(lost),
+                    f"{lost[0][0]}, to {lost[0][2]}" if lost else "",
+                ),
+            ]
+            for what, query in CHECKS.items():
+                places = [str(row[0]) for row in driver.execute(query)]
+                found.append(Finding(what, len(places), places[0] if places else ""))
     return tuple(found)

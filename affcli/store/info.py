@@ -1,13 +1,18 @@
-"""What stands in a database file, for `affcli db info` and messages. Standard library only."""
+"""What stands in a database file, for `affcli db info` and messages."""
 
 import sqlite3
 from dataclasses import dataclass
 from pathlib import Path
 
-from affcli.store.database_file import look, opened, require_place, require_something
-from affcli.store.faults import faults_named
-from affcli.store.identity import REVISION
-from affcli.store.patience import PATIENCE
+from affcli.store.database_file import (
+    look,
+    one_state,
+    opened,
+    require_place,
+    require_something,
+)
+from affcli.store.lock_retry import LONGEST_WAIT
+from affcli.store.revision import REVISION
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +52,7 @@ COUNTS = {
 """Sums of what runs and trials say: counting millions of behaviors would read the whole file."""
 
 
-def database_info(path: Path, *, timeout: float = PATIENCE) -> DatabaseInfo:
+def database_info(path: Path, *, timeout: float = LONGEST_WAIT) -> DatabaseInfo:
     """Look at a database of any schema revision.
 
     Raises:
@@ -56,7 +61,7 @@ def database_info(path: Path, *, timeout: float = PATIENCE) -> DatabaseInfo:
     require_place(path, create=False, write=False)
     with opened(path, "rw", timeout) as driver:
         revision = require_something(look(driver, path, timeout), path)
-        with faults_named(path, timeout):
+        with one_state(driver, path, timeout):
             known = revision == REVISION
             return DatabaseInfo(
                 path=path,

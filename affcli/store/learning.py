@@ -1,4 +1,4 @@
-"""Learning runs in the store: begun, saved chunk by chunk, read again."""
+"""Learning runs, their behaviors and their rows (§3.2, §6)."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -8,63 +8,33 @@ from typing import Any
 import sqlalchemy as sa
 
 from affcli.core.affordance_table import AffordanceTable
-from affcli.core.geometry import Point, Pose
-from affcli.core.trial import BabblingRecord, LearningSpec, Truth
-from affcli.store.connection import Connected, insert_many, insert_one
-from affcli.store.mapping import (
-    affordance_from,
-    affordance_row,
-    behavior_row,
-    learning_spec_from,
-    reading_what_was_written,
-    settings_key,
-    to_json,
-)
-from affcli.store.rows import LearningRunRow
-from affcli.store.tables import affordance, behavior, learning_run
+from affcli.core.records import AlikeRun, ChangedPart, LearningRunInfo, StepScene, StoredRow
+from affcli.core.replay import Difference
+from affcli.core.specs import LearningSpec, LearningStep, RowStarts
+from affcli.errors import UsageError
+from affcli.store import reading, rows
+from affcli.store.comparing import by_number, differences
+from affcli.store.connection import Database, insert_many, insert_one, mappings, numbered
+from affcli.store.tables import affordance, behavior, learning_run, tool
 
-LearningStep = tuple[BabblingRecord, Truth]
-"""What one behavior of a learning run gave, and what truly happened."""
+COUNTERS = frozenset({"times_used", "times_successful"})
+"""Trials change them after a row is made."""
+
+
+def selected_runs() -> sa.Select[Any]:
+    """Select learning runs, each with the definition of its tool."""
+    return sa.select(learning_run, tool.c.definition).select_from(
+        learning_run.outerjoin(tool, tool.c.key == learning_run.c.tool_key)
+    )
 
 
 @dataclass(frozen=True, slots=True)
-class LearningRunInfo:
-    """What the store holds of a learning run.
+class Learning:
+    """Learning runs, with the behaviors and the rows of each."""
 
-    Args:
-        id: its number in the store.
-        session_id: the reproduction it is part of; None when it stands for itself.
-        spec: what it is a function of.
-        versions: what it was made with.
-        status: ``running`` or ``done``.
-        behaviors: exploratory behaviors executed.
-        rows: rows of its affordance table.
-        resets: how often the attractor was put back.
-        redraws: wrist positions drawn again because the attractor was in the way.
-        robot_seconds: the robot clock.
-        checkpoint: what it needs to go on; None at the beginning and when done.
-        started_at, finished_at: ISO text, UTC.
-    """
+    database: Database
 
-    id: int
-    session_id: int | None
-    spec: LearningSpec
-    versions: dict[str, str]
-    status: str
-    behaviors: int
-    rows: int
-    resets: int
-    redraws: int
-    robot_seconds: float
-    checkpoint: dict[str, Any] | None
-    started_at: str
-    finished_at: str | None
-
-
-class LearningRuns(Connected):
-    """The part of the store that keeps learning runs."""
-
-    def begin_learning(
+    def begin(
         self,
         spec: LearningSpec,
         versions: Mapping[str, str],
@@ -78,23 +48,42 @@ class LearningRuns(Connected):
             versions: recorded with a new run.
             now: ISO text, UTC.
             session_id: the reproduction it is part of.
-
-        Raises:
-            DatabaseError: the run could not be read or stored.
         """
-        wanted = _the_run(spec, session_id)
-        with self.reading() as connection:
-            found = _info(connection, wanted)
+        found = self.find(spec, session_id)
         if found is not None:
             return found
-        with self.writing() as connection:
+        with self.database.writing() as connection:
             # Another process may have begun it in between.
-            if _info(connection, wanted) is None:
-                row = new_learning_run(spec, versions, now, session_id)
-                insert_one(connection, learning_run, row)
-            return info_from(connection.execute(wanted).mappings().one())
+            if connection.execute(_the_run(spec, session_id)).first() is None:
+                insert_run(connection, rows.learning_run_row(spec, versions, now, session_id), spec)
+            (row,) = mappings(connection, _the_run(spec, session_id))
+            return reading.learning_run(row)
 
-    def append_learning(
+    def find(self, spec: LearningSpec, session_id: int | None = None) -> LearningRunInfo | None:
+        """Return the stored run of `spec`, None when there is none."""
+        found = self.database.mappings(_the_run(spec, session_id))
+        return reading.learning_run(found[0]) if found else None
+
+    def find_alike(self, spec: LearningSpec) -> tuple[AlikeRun, ...]:
+        """Return the stored runs that differ from `spec` in settings or the world's version alone.
+
+        A tool and its hold are taken to follow from the settings: both are told where they differ.
+        """
+        c = learning_run.c
+        wanted = selected_runs().where(
+            c.session_id.is_(None),
+            *(c.tool == spec.tool, c.seed == spec.seed, c.robot == spec.robot),
+            *(c.hours.is_(spec.hours), c.behaviors_limit.is_(spec.behaviors)),
+            *(c.explorer == str(spec.explorer), c.sensor == spec.sensor, c.key != spec.key),
+        )
+        runs = map(reading.learning_run, self.database.mappings(wanted.order_by(c.id)))
+        return tuple(
+            AlikeRun(run, _changed(run.spec, spec))
+            for run in runs
+            if run.spec.repertoire == spec.repertoire and run.spec.world.name == spec.world.name
+        )
+
+    def append(
         self,
         run_id: int,
         after_step: int,
@@ -125,23 +114,23 @@ class LearningRuns(Connected):
         Raises:
             DatabaseError: the chunk could not be saved; what was saved before is kept.
         """
-        with self.writing() as connection:
-            row = connection.execute(sa.select(learning_run).filter_by(id=run_id)).mappings().one()
+        with self.database.writing() as connection:
+            (row,) = mappings(connection, sa.select(learning_run).filter_by(id=run_id))
             if row["behaviors"] > after_step or row["status"] == "done":
                 return False
             if row["behaviors"] < after_step:
                 raise ValueError(f"run {run_id}: {row['behaviors']} behaviors, not {after_step}")
-            rows = insert_learning_steps(connection, run_id, row["tool"], steps)
+            made = insert_steps(connection, run_id, row["tool"], steps)
             connection.execute(
                 sa.update(learning_run)
                 .filter_by(id=run_id)
                 .values(
                     behaviors=row["behaviors"] + len(steps),
-                    rows=row["rows"] + rows,
+                    rows=row["rows"] + made,
                     resets=row["resets"] + sum(record.resets for record, _ in steps),
                     redraws=row["redraws"] + sum(record.redraws for record, _ in steps),
                     robot_seconds=robot_seconds,
-                    checkpoint=None if done or checkpoint is None else to_json(checkpoint),
+                    checkpoint=None if done or checkpoint is None else rows.to_json(checkpoint),
                     status="done" if done else "running",
                     finished_at=now if done else None,
                     calibration=calibration,
@@ -149,12 +138,18 @@ class LearningRuns(Connected):
             )
             return True
 
-    def learning_runs(
-        self,
-        *,
-        tool: str | None = None,
-        session_id: int | None = None,
-        status: str | None = None,
+    def run(self, run_id: int) -> LearningRunInfo:
+        """Return a learning run, one of a reproduction too.
+
+        Raises:
+            UsageError: there is none of that number; the message says which there are.
+        """
+        with self.database.reading() as connection:
+            found = numbered(connection, selected_runs(), learning_run, "learning run", run_id)
+        return reading.learning_run(found)
+
+    def runs(
+        self, *, tool: str | None = None, session_id: int | None = None, status: str | None = None
     ) -> tuple[LearningRunInfo, ...]:
         """Return the stored runs, oldest first.
 
@@ -163,18 +158,18 @@ class LearningRuns(Connected):
             session_id: those of this reproduction; None for those that stand for themselves.
             status: only ``running`` or only ``done`` ones.
         """
-        wanted = sa.select(learning_run).where(learning_run.c.session_id.is_(session_id))
+        wanted = selected_runs().where(learning_run.c.session_id.is_(session_id))
         for column, value in (("tool", tool), ("status", status)):
             if value is not None:
                 wanted = wanted.where(learning_run.c[column] == value)
-        return tuple(map(info_from, self.mappings(wanted.order_by(learning_run.c.id))))
+        found = self.database.mappings(wanted.order_by(learning_run.c.id))
+        return tuple(map(reading.learning_run, found))
 
-    def latest_run(self, tool: str) -> LearningRunInfo | None:
-        """Return the latest finished run of `tool` that is not part of a reproduction."""
-        runs = self.learning_runs(tool=tool, status="done")
-        return max(runs, key=lambda run: (run.finished_at or "", run.id), default=None)
+    def latest(self, tool: str) -> LearningRunInfo | None:
+        """Return the finished run of `tool` that was begun last, no part of a reproduction."""
+        return next(reversed(self.runs(tool=tool, status="done")), None)
 
-    def affordance_table(
+    def table(
         self, run_id: int, *, as_learned: bool = False
     ) -> tuple[AffordanceTable, dict[int, int]]:
         """Return the affordance table of a run.
@@ -186,95 +181,159 @@ class LearningRuns(Connected):
         Returns:
             The table; and the id of each row in the store by its learning step.
         """
-        rows = self.mappings(sa.select(affordance).filter_by(learning_run_id=run_id))
-        with reading_what_was_written(f"the affordance table of run {run_id}"):
-            table = AffordanceTable(affordance_from(row, as_learned=as_learned) for row in rows)
-        return table, {row["step"]: row["id"] for row in rows}
+        found = self.database.mappings(sa.select(affordance).filter_by(learning_run_id=run_id))
+        fresh = dict.fromkeys(COUNTERS, 1) if as_learned else {}
+        with reading.reading_what_was_written(f"the affordance table of run {run_id}"):
+            table = AffordanceTable(reading.affordance({**row, **fresh}) for row in found)
+        return table, {row["step"]: row["id"] for row in found}
 
-    def row_starts(self, run_id: int) -> dict[int, tuple[Point, Pose]]:
+    def row(self, row_id: int) -> StoredRow:
+        """Return a row of an affordance table.
+
+        Raises:
+            UsageError: there is none of that number; the message says which there are.
+        """
+        with self.database.reading() as connection:
+            found = numbered(connection, sa.select(affordance), affordance, "affordance", row_id)
+        return reading.stored_row(found)
+
+    def rows(self, run_id: int) -> tuple[StoredRow, ...]:
+        """Return the rows of a learning run, oldest first."""
+        wanted = sa.select(affordance).filter_by(learning_run_id=run_id)
+        return tuple(
+            map(reading.stored_row, self.database.mappings(wanted.order_by(affordance.c.step)))
+        )
+
+    def row_starts(self, run_id: int) -> RowStarts:
         """Return where the wrist and, truly, the attractor were when each row of a run was made.
 
-        Returns:
-            By learning step: wrist (in, table frame) and attractor (in, rad).
+        Empty for a world that does not tell where the attractor truly is.
         """
         b = behavior.c
-        wanted = sa.select(
-            *(b.step, b.wrist_start_x, b.wrist_start_y),
-            *(b.true_start_x, b.true_start_y, b.true_start_angle),
-        ).where(b.learning_run_id == run_id, b.change_detected == 1)
-        with self.reading() as connection:
-            rows = connection.execute(wanted).all()
-        return {step: (Point(wx, wy), Pose(x, y, angle)) for step, wx, wy, x, y, angle in rows}
+        wanted = sa.select(behavior).where(
+            b.learning_run_id == run_id, b.change_detected == 1, b.true_start_x.is_not(None)
+        )
+        return {
+            row["step"]: (reading.pose(row, "wrist_start"), reading.pose(row, "true_start"))
+            for row in self.database.mappings(wanted)
+        }
+
+    def scene(self, run_id: int, number: int) -> StepScene:
+        """Return one behavior of a learning run.
+
+        Raises:
+            UsageError: no such run, or no such behavior in it, or its world does not tell where the
+                attractor truly was.
+        """
+        info, b = self.run(run_id), behavior.c
+        wanted = sa.select(behavior).where(
+            b.learning_run_id == run_id, b.step.in_((number - 1, number))
+        )
+        found = {row["step"]: row for row in self.database.mappings(wanted)}
+        title = f"Run {run_id}, behavior {number} of {info.behaviors}"
+        with reading.reading_what_was_written(title):
+            row, before = found.get(number), found.get(number - 1)
+            if row is None:
+                raise UsageError(
+                    f"no behavior {number} in run {run_id}; it has 1 to {info.behaviors}"
+                )
+            start = reading.point_or_none(row, "true_start")
+            end = reading.point_or_none(row, "true_end")
+            if start is None or end is None:
+                raise UsageError(f"run {run_id}: its world does not tell where the attractor was")
+            return StepScene(
+                *(title, (run_id, number), info.spec, info.spec.tool, info.spec.held),
+                goal=None,
+                seed=info.spec.seed,
+                robot=info.spec.robot,
+                wrist_before=None if before is None else reading.pose(before, "wrist_end"),
+                wrist_start=reading.pose(row, "wrist_start"),
+                wrist_end=reading.pose(row, "wrist_end"),
+                attractor_start=start,
+                attractor_end=end,
+                call=reading.behavior_call(row["exploratory_behavior"], row["exploratory_params"]),
+                blocked=False,
+            )
+
+    def differences(
+        self, run_id: int, tool: str, steps: Sequence[LearningStep]
+    ) -> tuple[Difference, ...]:
+        """Return where behaviors of a learning run that were done again differ from their record.
+
+        The rows they made are compared too, but for the counters, which trials change.
+
+        Args:
+            run_id: the record.
+            tool: the name of the tool held.
+            steps: what was done: behaviors that follow one another.
+        """
+        if not steps:
+            return ()
+        first, last = steps[0][0].step, steps[-1][0].step
+        done = {record.step: rows.behavior_row(run_id, record, truth) for record, truth in steps}
+        made = {
+            record.step: rows.affordance_row(run_id, tool, record.affordance)
+            for record, _ in steps
+            if record.affordance is not None
+        }
+        kept, kept_rows = (
+            by_number(
+                self.database.mappings(
+                    sa.select(table)
+                    .filter_by(learning_run_id=run_id)
+                    .where(table.c.step.between(first, last))
+                ),
+                "step",
+            )
+            for table in (behavior, affordance)
+        )
+        return (
+            *differences("behavior", kept, done),
+            *(d for d in differences("affordance", kept_rows, made) if d.column not in COUNTERS),
+        )
 
 
-def new_learning_run(
-    spec: LearningSpec, versions: Mapping[str, str], now: str, session_id: int | None
-) -> LearningRunRow:
-    """Return the row of a run in which nothing was executed yet."""
-    return LearningRunRow(
-        session_id=session_id,
-        tool=spec.tool,
-        seed=spec.seed,
-        robot=spec.robot,
-        hours=spec.hours,
-        behaviors_limit=spec.behaviors,
-        settings=spec.settings,
-        settings_key=settings_key(spec.settings),
-        versions=to_json(versions),
-        status="running",
-        behaviors=0,
-        rows=0,
-        resets=0,
-        redraws=0,
-        robot_seconds=0.0,
-        checkpoint=None,
-        started_at=now,
-        finished_at=None,
-    )
+def insert_run(connection: sa.Connection, row: Mapping[str, Any], spec: LearningSpec) -> int:
+    """Insert a learning run and its tool, unless that is there; return the run's id."""
+    insert_tools(connection, spec)
+    return insert_one(connection, learning_run, row)
 
 
-def insert_learning_steps(
+def insert_tools(connection: sa.Connection, *specs: Any) -> None:
+    """Insert the tools that specs hold, but for those that are there and those without a shape."""
+    held = {spec.held for spec in specs if spec.held.parts}
+    if held:
+        connection.exec_driver_sql(
+            "INSERT OR IGNORE INTO tool (key, name, definition) VALUES (?, ?, ?)",
+            [rows.tool_row(tool) for tool in held],
+        )
+
+
+def insert_steps(
     connection: sa.Connection, run_id: int, tool: str, steps: Sequence[LearningStep]
 ) -> int:
     """Insert the behaviors of `steps` and the affordances they made; return how many these are."""
     made = [record.affordance for record, _ in steps if record.affordance is not None]
-    insert_many(connection, behavior, [behavior_row(run_id, *step) for step in steps])
-    insert_many(connection, affordance, [affordance_row(run_id, tool, row) for row in made])
+    insert_many(connection, behavior, [rows.behavior_row(run_id, *step) for step in steps])
+    insert_many(connection, affordance, [rows.affordance_row(run_id, tool, row) for row in made])
     return len(made)
 
 
 def _the_run(spec: LearningSpec, session_id: int | None) -> sa.Select[Any]:
     """Select the one run that `spec` names, by the columns of the unique index."""
     c = learning_run.c
-    return sa.select(learning_run).where(
-        sa.func.coalesce(c.session_id, 0) == (session_id or 0),
-        c.robot == spec.robot,
-        c.tool == spec.tool,
-        c.seed == spec.seed,
-        sa.func.coalesce(c.hours, 0) == (spec.hours or 0),
-        sa.func.coalesce(c.behaviors_limit, 0) == (spec.behaviors or 0),
-        c.settings_key == settings_key(spec.settings),
+    return selected_runs().where(
+        sa.func.coalesce(c.session_id, 0) == (session_id or 0), c.key == spec.key
     )
 
 
-def _info(connection: sa.Connection, wanted: sa.Select[Any]) -> LearningRunInfo | None:
-    """Return the run selected, None when there is none."""
-    row = connection.execute(wanted).mappings().one_or_none()
-    return None if row is None else info_from(row)
-
-
-def info_from(row: sa.RowMapping) -> LearningRunInfo:
-    """Return what a row of learning_run says."""
-    with reading_what_was_written(f"learning run {row['id']}"):
-        return LearningRunInfo(
-            spec=learning_spec_from(row),
-            versions=dict(json.loads(row["versions"])),
-            checkpoint=None if row["checkpoint"] is None else dict(json.loads(row["checkpoint"])),
-            **{
-                name: row[name]
-                for name in (
-                    *("id", "session_id", "status", "behaviors", "rows", "resets", "redraws"),
-                    *("robot_seconds", "started_at", "finished_at"),
-                )
-            },
-        )
+def _changed(stored: LearningSpec, wanted: LearningSpec) -> tuple[ChangedPart, ...]:
+    """Return in which settings, and in what else, two specs differ."""
+    old, new = json.loads(stored.settings), json.loads(wanted.settings)
+    parts = [(name, old.get(name), new.get(name)) for name in sorted(old.keys() | new.keys())]
+    parts += [
+        ("world", str(stored.world), str(wanted.world)),
+        ("binding", str(stored.binding), str(wanted.binding)),
+        ("tool", stored.held.key[:8], wanted.held.key[:8]),
+    ]
+    return tuple(ChangedPart(*part) for part in parts if part[1] != part[2])

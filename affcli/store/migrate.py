@@ -1,6 +1,6 @@
 """Bringing a database to the schema of this code, in one transaction (Alembic, imported late).
 
-A new revision: ``alembic revision --rev-id 0002 -m "what it does"``, and `REVISION` in `identity`.
+A new revision: ``alembic revision --rev-id 0002 -m "what it does"``, and `REVISION` in `revision`.
 """
 
 from pathlib import Path

@@ -1,29 +1,83 @@
-"""Opening a database: look first, migrate what is new, refuse what is not ours."""
+"""Opening a database: made or migrated if it must be, and checked before anything is read."""
 
 import sqlite3
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 import sqlalchemy as sa
 
 from affcli.errors import DatabaseError, one_line
+from affcli.store.connection import Database
 from affcli.store.copying import backup_name, copy_of
 from affcli.store.database_file import look, opened, require_place, require_something
 from affcli.store.faults import PRIMARY, faults_named, result_code
-from affcli.store.identity import REVISION, is_older, require_current, stored_revision
 from affcli.store.journal import set_journal_mode
+from affcli.store.learning import Learning
+from affcli.store.lock_retry import LONGEST_WAIT, retried
 from affcli.store.migrate import run_migrations
-from affcli.store.patience import PATIENCE, patiently
-from affcli.store.repository import Store
+from affcli.store.results import Results
+from affcli.store.revision import REVISION, is_older, require_current, stored_revision
+from affcli.store.selections import Selections
+from affcli.store.sessions import Sessions
+from affcli.store.trials import Trials
+from affcli.store.verifications import Verifications
 
 OF_THE_STATEMENT = frozenset({sqlite3.SQLITE_ERROR, sqlite3.SQLITE_CONSTRAINT})
 """Result codes by which a migration says that it does not fit what it found."""
 
 
+@dataclass(frozen=True, slots=True)
+class Store:
+    """An open database: an object for each thing that is kept.
+
+    Every method of these is one transaction and returns plain values; no row or connection leaves
+    the store. A method that cannot read or write raises DatabaseError, and what was saved before is
+    kept.
+    """
+
+    database: Database
+
+    @property
+    def path(self) -> Path:
+        """The file."""
+        return self.database.path
+
+    @property
+    def sessions(self) -> Sessions:
+        """Sessions, and the robots of reproductions."""
+        return Sessions(self.database)
+
+    @property
+    def learning(self) -> Learning:
+        """Learning runs, with the behaviors and the rows of each."""
+        return Learning(self.database)
+
+    @property
+    def trials(self) -> Trials:
+        """Testing trials, with the steps of each."""
+        return Trials(self.database)
+
+    @property
+    def verifications(self) -> Verifications:
+        """Verifications, with the tries of each."""
+        return Verifications(self.database)
+
+    @property
+    def results(self) -> Results:
+        """Counts and sums for reports."""
+        return Results(self.database)
+
+    @property
+    def selections(self) -> Selections:
+        """What filters leave."""
+        return Selections(self.database)
+
+
 @contextmanager
 def open_store(
-    path: Path, *, create: bool, write: bool, timeout: float = PATIENCE
+    path: Path, *, create: bool, write: bool, timeout: float = LONGEST_WAIT
 ) -> Iterator[Store]:
     """Open a database for the length of a ``with`` block.
 
@@ -41,19 +95,22 @@ def open_store(
         revision = look(driver, path, timeout)
         if revision is not None or not create:
             require_current(require_something(revision, path), path)
-        with _engine(driver).connect() as connection:
-            store = Store(connection, driver, path, timeout)
-            _wait_for_disk(driver)
+        with _connected(driver, path, timeout) as database:
             if revision is None:
-                _migrate(store, driver)
-            _prepare(driver, path, timeout, write=write or create)
-            yield store
+                _migrate(database, driver)
+            with faults_named(path, timeout):
+                retried(lambda: driver.execute("PRAGMA foreign_keys = ON"), timeout)
+                if write or create:
+                    retried(lambda: set_journal_mode(driver), timeout)
+                else:
+                    retried(lambda: driver.execute("PRAGMA query_only = ON"), timeout)
+            yield Store(database)
 
 
 def upgrade(
     path: Path,
     *,
-    timeout: float = PATIENCE,
+    timeout: float = LONGEST_WAIT,
     copied: Callable[[Path], None] | None = None,
 ) -> tuple[str, str]:
     """Bring an existing database to the schema of this affcli, in one transaction.
@@ -76,42 +133,58 @@ def upgrade(
     with opened(path, "rw", timeout) as driver:
         before = require_something(look(driver, path, timeout), path)
         if is_older(before):
-            _wait_for_disk(driver)
-            with _engine(driver).connect() as connection:
-                _migrate(Store(connection, driver, path, timeout), driver, copied)
+            with _connected(driver, path, timeout) as database:
+                _migrate(database, driver, copied)
         else:
             require_current(before, path)
         return before, REVISION
 
 
+@contextmanager
+def _connected(driver: sqlite3.Connection, path: Path, timeout: float) -> Iterator[Database]:
+    """Give a database whose one connection is `driver`; a commit returns when it is on the disk."""
+    with faults_named(path, timeout):
+        # FULL would leave out the folder: after a power cut the journal could be there again, and
+        # would take back what was said to be saved.
+        retried(lambda: driver.execute("PRAGMA synchronous = EXTRA"), timeout)
+    # Transactions are ended where they are begun, so nothing is left to reset: and after ctrl-C the
+    # driver may be closed already.
+    engine = sa.create_engine(
+        "sqlite://", creator=lambda: driver, poolclass=sa.StaticPool, pool_reset_on_return=None
+    )
+    with engine.connect() as connection:
+        yield Database(connection, driver, path, timeout)
+
+
 def _migrate(
-    store: Store, driver: sqlite3.Connection, copied: Callable[[Path], None] | None = None
+    database: Database, driver: sqlite3.Connection, copied: Callable[[Path], None] | None = None
 ) -> None:
     """Run the migrations that are missing, unless another process has just done so.
 
     What is in the database already is copied first: under the write lock, for the copy of a second
     process that upgrades it too would be of the new schema.
     """
-    with store.writing() as connection:
-        revision = stored_revision(driver, store.path)
+    path = database.path
+    with database.writing() as connection:
+        revision = stored_revision(driver, path)
         if revision is None:
             run_migrations(connection)
         elif is_older(revision):
-            copy = _copy_before(revision, store.path)
+            copy = _copy_before(revision, path)
             if copied is not None:
                 copied(copy)
-            with _failure_named(store.path, revision, copy):
+            with _failure_named(path, revision, copy):
                 run_migrations(connection)
         else:
-            require_current(revision, store.path)
+            require_current(revision, path)
 
 
 def _copy_before(revision: str, path: Path) -> Path:
     """Copy a database that this process alone may write; return where the copy is."""
     copy = backup_name(path, revision)
     # Through a connection of its own: SQLite copies nothing from one that is about to write.
-    with opened(path, "rw", PATIENCE) as reader:
-        copy_of(reader, path, copy, PATIENCE)
+    with opened(path, "rw", LONGEST_WAIT) as reader:
+        copy_of(reader, path, copy, LONGEST_WAIT)
     return copy
 
 
@@ -128,29 +201,3 @@ def _failure_named(path: Path, revision: str, copy: Path) -> Iterator[None]:
             f"{one_line(error.orig)}; it is as it was, and {one_line(copy)} is a copy; was "
             "something added to it that is not affcli's? Take that out, then try again"
         ) from error
-
-
-def _engine(driver: sqlite3.Connection) -> sa.Engine:
-    """Return an engine whose one connection is `driver`."""
-    # Transactions are ended where they are begun, so nothing is left to reset: and after ctrl-C the
-    # driver may be closed already.
-    return sa.create_engine(
-        "sqlite://", creator=lambda: driver, poolclass=sa.StaticPool, pool_reset_on_return=None
-    )
-
-
-def _wait_for_disk(driver: sqlite3.Connection) -> None:
-    """Let a commit return when all of it is on the disk, the end of its journal too."""
-    # FULL would leave out the folder: after a power cut the journal could be there again, and would
-    # take back what was said to be saved.
-    driver.execute("PRAGMA synchronous = EXTRA")
-
-
-def _prepare(driver: sqlite3.Connection, path: Path, timeout: float, *, write: bool) -> None:
-    """Set what SQLite keeps for a connection, and the journal that suits its version."""
-    driver.execute("PRAGMA foreign_keys = ON")
-    if write:
-        with faults_named(path, timeout):
-            patiently(lambda: set_journal_mode(driver), timeout)
-    else:
-        driver.execute("PRAGMA query_only = ON")

@@ -5,19 +5,18 @@ together, as rows a tenth of it; and the worker does the mapping. Needs no SQLAl
 """
 
 from dataclasses import dataclass
+from typing import Any
 
-from affcli.core.trial import LearningSpec, RobotRecord, TrialRecord
-from affcli.store.mapping import (
+from affcli.core.specs import LearningSpec, RobotRecord, TrialRecord
+from affcli.core.tool import Tool
+from affcli.store.rows import (
+    Row,
     affordance_row,
     behavior_row,
     step_row,
-    trial_end_columns,
+    trial_end_row,
     trial_row,
 )
-from affcli.store.rows import TrialRow
-
-PlainRow = tuple[object, ...]
-"""A row whose ids are still to come: that of the run, trial or affordance it belongs to."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,13 +24,15 @@ class PackedTrial:
     """One trial as rows.
 
     Args:
+        held: the tool truly held.
         row: the trial, without the ids of its session and run.
         steps: its steps, without the ids of the trial and the affordance.
         tried: the learning step of the affordance that each step tried.
     """
 
-    row: TrialRow
-    steps: tuple[PlainRow, ...]
+    held: Tool
+    row: dict[str, Any]
+    steps: tuple[Row, ...]
     tried: tuple[int, ...]
 
 
@@ -47,8 +48,8 @@ class PackedRun:
     """
 
     spec: LearningSpec
-    behaviors: tuple[PlainRow, ...]
-    affordances: tuple[PlainRow, ...]
+    behaviors: tuple[Row, ...]
+    affordances: tuple[Row, ...]
     resets: int
     redraws: int
     robot_seconds: float
@@ -78,7 +79,7 @@ def pack_robot(record: RobotRecord) -> PackedRobot:
         runs.append(
             PackedRun(
                 spec=spec,
-                behaviors=tuple(tuple(behavior_row(0, *step))[1:] for step in steps),
+                behaviors=tuple(behavior_row(0, *step)[1:] for step in steps),
                 affordances=tuple(affordance_row(0, spec.tool, row)[1:] for row in rows),
                 resets=sum(r.resets for r, _ in steps),
                 redraws=sum(r.redraws for r, _ in steps),
@@ -92,7 +93,8 @@ def pack_robot(record: RobotRecord) -> PackedRobot:
 def pack_trial(trial: TrialRecord) -> PackedTrial:
     """Return a trial as rows."""
     return PackedTrial(
-        row=trial_row(0, 0, trial.spec, trial.calibration)._replace(**trial_end_columns(trial.end)),
-        steps=tuple(tuple(step_row(0, 0, *step))[2:] for step in trial.steps),
+        held=trial.spec.held,
+        row=trial_row(trial.spec, trial.calibration) | trial_end_row(trial.end),
+        steps=tuple(step_row(0, 0, *step)[2:] for step in trial.steps),
         tried=tuple(step.record.row.step for step in trial.steps),
     )

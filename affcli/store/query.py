@@ -6,13 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
 
+from affcli.core.row_filter import Cell
 from affcli.errors import BadInputError, one_line
 from affcli.store.database_file import look, opened, require_place, require_something
 from affcli.store.faults import PRIMARY, faults_named, result_code
-from affcli.store.identity import require_current
-from affcli.store.patience import PATIENCE, patiently
-
-Value = str | int | float | bytes | None
+from affcli.store.lock_retry import LONGEST_WAIT, retried
+from affcli.store.revision import require_current
 
 MAX_ROWS = 10_000
 MAX_SECONDS = 2.0
@@ -60,7 +59,7 @@ class QueryResult:
     """
 
     columns: tuple[str, ...]
-    rows: tuple[tuple[Value, ...], ...]
+    rows: tuple[tuple[Cell, ...], ...]
     truncated: bool
 
 
@@ -70,7 +69,7 @@ def run_sql(
     *,
     max_seconds: float = MAX_SECONDS,
     max_rows: int = MAX_ROWS,
-    timeout: float = PATIENCE,
+    timeout: float = LONGEST_WAIT,
 ) -> QueryResult:
     """Run one SELECT.
 
@@ -91,7 +90,7 @@ def run_sql(
         require_current(require_something(look(driver, path, timeout), path), path)
     with opened(path, "ro", timeout) as driver, faults_named(path, timeout):
         _confine(driver)
-        return patiently(lambda: _run(driver, text, max_seconds, max_rows), timeout)
+        return retried(lambda: _run(driver, text, max_seconds, max_rows), timeout)
 
 
 def _confine(driver: sqlite3.Connection) -> None:
@@ -117,7 +116,7 @@ def _run(driver: sqlite3.Connection, text: str, max_seconds: float, max_rows: in
     """Run the statement until it ends, or time, rows or bytes are used up."""
     deadline = time.monotonic() + max_seconds
     driver.set_progress_handler(lambda: time.monotonic() > deadline, OPCODES_BETWEEN_LOOKS)
-    rows: list[tuple[Value, ...]] = []
+    rows: list[tuple[Cell, ...]] = []
     size = 0
     try:
         cursor = driver.execute(text)

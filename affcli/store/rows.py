@@ -1,224 +1,204 @@
-"""The tables as this code knows them: one tuple type each, in the order of its columns.
+"""From records to rows. Needs no SQLAlchemy: a worker process turns what a robot did into rows."""
 
-Only ``migrations/`` makes schema; a test compares the two.
-"""
+import json
+from collections.abc import Mapping
+from functools import lru_cache
+from typing import Any
 
-from typing import NamedTuple
+from affcli.core.affordance import Affordance
+from affcli.core.behavior import BehaviorCall, repertoire_json
+from affcli.core.choice import Reasons
+from affcli.core.geometry import direction_degrees
+from affcli.core.identity import canonical_json
+from affcli.core.specs import LearningSpec, SessionSpec, TrialSpec, VerificationSpec
+from affcli.core.tool import Tool
+from affcli.core.trial import Attempt, BabblingRecord, StepRecord, TrialEnd, Truth
+from affcli.core.verification import ReplicationRecord
 
-from affcli.core.observation import Observation
-
-
-class SessionRow(NamedTuple):
-    """One command that produced trials or a reproduction."""
-
-    kind: str
-    seed: int
-    robots: int
-    settings: str
-    settings_key: str
-    versions: str
-    status: str
-    started_at: str
-    finished_at: str | None
+Row = tuple[object, ...]
+"""The values of a row in the order of `columns.COLUMNS`."""
 
 
-class LearningRunRow(NamedTuple):
-    """One robot's learning with one tool."""
-
-    session_id: int | None
-    tool: str
-    seed: int
-    robot: int
-    hours: float | None
-    behaviors_limit: int | None
-    settings: str
-    settings_key: str
-    versions: str
-    status: str
-    behaviors: int
-    rows: int
-    resets: int
-    redraws: int
-    robot_seconds: float
-    checkpoint: str | None
-    started_at: str
-    finished_at: str | None
-    calibration: str | None = None
+def to_json(value: Any) -> str:
+    """Return `value` as compact JSON, its keys in their own order."""
+    return json.dumps(value, separators=(",", ":"), allow_nan=False)
 
 
-class BehaviorRow(NamedTuple):
-    """One exploratory behavior of a learning run, with or without effect."""
-
-    learning_run_id: int
-    step: int
-    clock: float
-    exploratory_behavior: str
-    exploratory_params: str
-    status: str
-    duration: float
-    resets: int
-    redraws: int
-    place_x: float
-    place_y: float
-    wrist_start_x: float
-    wrist_start_y: float
-    wrist_end_x: float
-    wrist_end_y: float
-    start_object_x: float
-    start_object_y: float
-    start_wrist_to_object_x: float
-    start_wrist_to_object_y: float
-    end_object_x: float
-    end_object_y: float
-    end_wrist_to_object_x: float
-    end_wrist_to_object_y: float
-    true_start_x: float
-    true_start_y: float
-    true_start_angle: float
-    true_end_x: float
-    true_end_y: float
-    true_end_angle: float
-    change_detected: bool
+@lru_cache(maxsize=256)
+def params_to_json(call: BehaviorCall) -> str:
+    """Return a call's parameters as ``{"offset_distance": 5.0}``."""
+    return json.dumps(dict(call.params), allow_nan=False)
 
 
-class TrialRow(NamedTuple):
-    """One testing trial."""
-
-    session_id: int
-    learning_run_id: int
-    protocol: str
-    robot: int
-    tool: str
-    shape: str
-    goal: int
-    start: int
-    seed: int
-    counters: str
-    outcome: str | None = None
-    steps: int | None = None
-    robot_seconds: float | None = None
-    last_rows_consistent: int | None = None
-    last_rows_probable: int | None = None
-    last_rows_reachable: int | None = None
-    last_rows_nearest: int | None = None
-    sensor: str = "noisy"
-    calibration: str | None = None
+def tool_row(tool: Tool) -> Row:
+    """Return the row of a tool whose shape is known."""
+    return (tool.key, tool.name, canonical_json(tool.canonical()))
 
 
-class StepRow(NamedTuple):
-    """One step of a testing trial."""
-
-    trial_id: int
-    affordance_id: int
-    number: int
-    clock: float
-    rows_consistent: int
-    rows_probable: int
-    rows_reachable: int
-    rows_nearest: int
-    placing_status: str
-    status: str | None
-    wrist_start_x: float
-    wrist_start_y: float
-    wrist_end_x: float
-    wrist_end_y: float
-    start_object_x: float
-    start_object_y: float
-    end_object_x: float
-    end_object_y: float
-    true_start_x: float
-    true_start_y: float
-    true_end_x: float
-    true_end_y: float
-    expected_dx: float
-    expected_dy: float
-    seen_dx: float
-    seen_dy: float
-    seen_distance: float
-    replicated: bool
-    times_used_before: int
-    times_used_after: int
-    times_successful_before: int
-    times_successful_after: int
-    died: bool
-    lost: bool | None
+def tool_key(tool: Tool) -> str | None:
+    """Return the key by which records refer to a tool; None where its shape is not known."""
+    return tool.key if tool.parts else None
 
 
-class VerificationRow(NamedTuple):
-    """One verification of a table that updated its counters."""
-
-    learning_run_id: int
-    shape: str
-    seed: int
-    sensor: str
-    calibration: str | None
-    tries_wanted: int
-    until_verdict: bool
-    uses_before: int
-    after_trial: int
-    versions: str
-    started_at: str
-    verdict: str | None = None
-    tries: int | None = None
-    decided_after: int | None = None
-    robot_seconds: float | None = None
-    finished_at: str | None = None
-
-
-class ReplicationRow(NamedTuple):
-    """One try of a verification."""
-
-    verification_id: int
-    number: int
-    clock: float
-    affordance_id: int
-    placing_status: str
-    status: str | None
-    wrist_start_x: float
-    wrist_start_y: float
-    wrist_end_x: float
-    wrist_end_y: float
-    start_object_x: float
-    start_object_y: float
-    end_object_x: float
-    end_object_y: float
-    true_start_x: float
-    true_start_y: float
-    true_start_angle: float
-    true_end_x: float
-    true_end_y: float
-    true_end_angle: float
-    expected_dx: float
-    expected_dy: float
-    seen_dx: float
-    seen_dy: float
-    seen_distance: float
-    replicated: bool
-    times_used_before: int
-    times_used_after: int
-    times_successful_before: int
-    times_successful_after: int
-    live: bool
-    died: bool
+def _parts_of(
+    spec: SessionSpec | LearningSpec, versions: Mapping[str, str], now: str
+) -> dict[str, Any]:
+    """Return the columns that a session and a learning run share."""
+    return {
+        "key": spec.key,
+        "seed": spec.seed,
+        "world": str(spec.world),
+        "repertoire": to_json(repertoire_json(spec.repertoire)),
+        "binding_behavior": spec.binding.name,
+        "binding_params": params_to_json(spec.binding),
+        "explorer": str(spec.explorer),
+        "sensor": spec.sensor,
+        "settings": spec.settings,
+        "versions": to_json(versions),
+        "status": "running",
+        "started_at": now,
+    }
 
 
-START_OBSERVATION = tuple(f"start_{name}" for name in Observation._fields)
-END_OBSERVATION = tuple(f"end_{name}" for name in Observation._fields)
+def session_row(spec: SessionSpec, versions: Mapping[str, str], now: str) -> dict[str, Any]:
+    """Return the columns of a session that begins now."""
+    return {
+        **_parts_of(spec, versions, now),
+        "kind": spec.kind,
+        "robots": spec.robots,
+        "planner": str(spec.planner),
+        "task_set": spec.task_set,
+    }
 
-AFFORDANCE_COLUMNS = (
-    "learning_run_id",
-    "step",
-    "tool",
-    "binding_behavior",
-    "binding_params",
-    "exploratory_behavior",
-    "exploratory_params",
-    "truncated",
-    *START_OBSERVATION,
-    *END_OBSERVATION,
-    "movement",
-    "direction",
-    "times_used",
-    "times_successful",
-)
-"""An affordance is a tuple of these: its 24 components are better made than written out."""
+
+def learning_run_row(
+    spec: LearningSpec, versions: Mapping[str, str], now: str, session: int | None
+) -> dict[str, Any]:
+    """Return the columns of a run in which nothing was executed yet."""
+    return {
+        **_parts_of(spec, versions, now),
+        "session_id": session,
+        "tool": spec.tool,
+        "tool_key": tool_key(spec.held),
+        "robot": spec.robot,
+        "hours": spec.hours,
+        "behaviors_limit": spec.behaviors,
+        **dict.fromkeys(("behaviors", "rows", "resets", "redraws"), 0),
+        "robot_seconds": 0.0,
+    }
+
+
+def behavior_row(run: int, record: BabblingRecord, truth: Truth | None) -> Row:
+    """Return the row of one exploratory behavior of a learning run."""
+    execution, start, end = record.execution, record.start, record.end
+    return (
+        *(run, record.step, record.clock, execution.call.name, params_to_json(execution.call)),
+        *(execution.status, execution.duration, record.resets, record.redraws),
+        *(record.placing.call["x"], record.placing.call["y"]),
+        *(*execution.wrist_start, *execution.wrist_end),
+        *(*start.object_position, *start.wrist_to_object),
+        *(*end.object_position, *end.wrist_to_object),
+        *((None,) * 6 if truth is None else (*truth.start, *truth.end)),
+        record.affordance is not None,
+    )
+
+
+def affordance_row(run: int, tool: str, row: Affordance) -> Row:
+    """Return the row of one affordance."""
+    expected = row.expected_movement
+    return (
+        *(run, row.step, tool, row.binding.name, params_to_json(row.binding)),
+        *(row.exploratory.name, params_to_json(row.exploratory), row.truncated),
+        *(*row.start, *row.end),
+        *(expected.distance, direction_degrees(expected.dx, expected.dy)),
+        *(row.times_used, row.times_successful, row.wrist_angle, *row.travel),
+    )
+
+
+def trial_row(spec: TrialSpec, calibration: str | None) -> dict[str, Any]:
+    """Return the columns of a trial that has not ended, but for its session and run."""
+    goal, start = spec.task.goal, spec.task.start
+    return {
+        "protocol": spec.protocol,
+        "robot": spec.robot,
+        "seed": spec.seed,
+        "tool": spec.tool,
+        "shape": spec.shape,
+        "shape_key": tool_key(spec.held),
+        "task_set": spec.task.task_set,
+        "goal": goal.name,
+        "goal_half_width": goal.half_width,
+        "goal_x": goal.center.x,
+        "goal_y": goal.center.y,
+        "start": spec.start,
+        "start_x": start.x,
+        "start_y": start.y,
+        "counters": spec.counters,
+        "planner": str(spec.planner),
+        "sensor": spec.sensor,
+        "world": str(spec.world),
+        "calibration": calibration,
+    }
+
+
+def trial_end_row(end: TrialEnd) -> dict[str, Any]:
+    """Return the columns of a trial that its end fills."""
+    last = None if end.last_reasons is None else reasons_json(end.last_reasons)
+    ended = {"outcome": end.outcome, "steps": end.steps, "robot_seconds": end.clock}
+    return {**ended, "last_reasons": last}
+
+
+def step_row(
+    trial: int, affordance: int, record: StepRecord, truth: Truth | None, lost: bool | None
+) -> Row:
+    """Return the row of one step of a trial, which tried an affordance of the store."""
+    true = (None,) * 4 if truth is None else (*truth.start.point, *truth.end.point)
+    return (
+        *(trial, affordance, record.number, record.clock, reasons_json(record.reasons)),
+        *(*_use(record), *true, record.died, lost),
+    )
+
+
+def verification_row(run: int, spec: VerificationSpec, calibration: str | None) -> dict[str, Any]:
+    """Return the columns of a verification that say which it is."""
+    return {
+        "learning_run_id": run,
+        "shape": spec.shape,
+        "shape_key": tool_key(spec.held),
+        "seed": spec.seed,
+        "sensor": spec.sensor,
+        "calibration": calibration,
+        "tries_wanted": spec.tries,
+        "until_verdict": spec.until_verdict,
+    }
+
+
+def replication_row(
+    verification: int, affordance: int, record: ReplicationRecord, truth: Truth | None
+) -> Row:
+    """Return the row of one try of a verification, which tried an affordance of the store."""
+    true = (None,) * 6 if truth is None else (*truth.start, *truth.end)
+    return (
+        *(verification, affordance, record.number, record.clock),
+        *(*_use(record), *true, record.live, record.live and record.died),
+    )
+
+
+def reasons_json(reasons: Reasons) -> str:
+    """Return a planner's reasons as a list in JSON."""
+    return to_json([reason.as_json() for reason in reasons])
+
+
+def _use(record: Attempt) -> Row:
+    """Return what was done with a row, seen, and counted."""
+    # When the tool could not be lowered nothing was executed: the placing tells of the wrist.
+    moved = record.execution or record.placing
+    return (
+        *(record.placing.status, None if record.execution is None else record.execution.status),
+        *(record.regrasped, *moved.wrist_start, *moved.wrist_end),
+        *(*record.start.object_position, *record.end.object_position),
+        *(record.expected.dx, record.expected.dy, record.seen.dx, record.seen.dy),
+        *(record.seen.distance, record.replicated),
+        *(record.row.times_used, record.times_used_after),
+        *(record.row.times_successful, record.times_successful_after),
+    )

@@ -1,37 +1,28 @@
-"""The tables for queries, from the tuple types of their rows."""
+"""The tables for queries."""
 
 import sqlalchemy as sa
 
-from affcli.store.rows import (
-    AFFORDANCE_COLUMNS,
-    BehaviorRow,
-    LearningRunRow,
-    ReplicationRow,
-    SessionRow,
-    StepRow,
-    TrialRow,
-    VerificationRow,
-)
+from affcli.store.columns import COLUMNS, NUMBERED
 
+TABLES = {
+    name: sa.table(name, *map(sa.column, (*(("id",) if name in NUMBERED else ()), *columns)))
+    for name, columns in COLUMNS.items()
+}
+tool = TABLES["tool"]
+session = TABLES["session"]
+learning_run = TABLES["learning_run"]
+behavior = TABLES["behavior"]
+affordance = TABLES["affordance"]
+trial = TABLES["trial"]
+step = TABLES["step"]
+verification = TABLES["verification"]
+replication = TABLES["replication"]
 
-def _table(name: str, *columns: str) -> sa.TableClause:
-    """Name a table and its columns."""
-    return sa.table(name, *map(sa.column, columns))
-
-
-session = _table("session", "id", *SessionRow._fields)
-learning_run = _table("learning_run", "id", *LearningRunRow._fields)
-behavior = _table("behavior", *BehaviorRow._fields)
-affordance = _table("affordance", "id", *AFFORDANCE_COLUMNS)
-trial = _table("trial", "id", *TrialRow._fields)
-step = _table("step", *StepRow._fields)
-verification = _table("verification", "id", *VerificationRow._fields)
-replication = _table("replication", *ReplicationRow._fields)
-
-# Of the view those columns that rows are chosen by.
-wide = _table(
+wide = sa.table(
     "affordance_wide",
-    *("id", "run", "exploratory_behavior", "exploratory_params", "replication_probability"),
+    *map(
+        sa.column,
+        ("id", "run", "exploratory_behavior", "exploratory_params", "replication_probability"),
+    ),
 )
-
-TABLES = (session, learning_run, behavior, affordance, trial, step, verification, replication)
+"""Of the view those columns that rows are chosen by."""

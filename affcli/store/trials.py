@@ -1,134 +1,42 @@
-"""Sessions and their testing trials in the store."""
+"""Testing trials and their steps (§7)."""
 
-import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Literal
+from dataclasses import dataclass, replace
 
 import sqlalchemy as sa
 
-from affcli.core.trial import (
-    LARGEST_SEED,
-    MOST_ROBOTS,
-    Counters,
-    RobotRecord,
-    StepRecord,
-    TrialEnd,
-    TrialRecord,
-    TrialSpec,
-    Truth,
-)
-from affcli.store.connection import Connected, insert_many, insert_one
+from affcli.core.affordance import PROBABILITY_THRESHOLD
+from affcli.core.affordance_table import AffordanceTable
+from affcli.core.records import StepScene, StoredStep, TrialInfo
+from affcli.core.replay import Difference
+from affcli.core.specs import Counters, TrialRecord, TrialSpec
+from affcli.core.trial import StepRecord, TrialEnd, TrialStep, Truth
+from affcli.errors import UsageError
+from affcli.store import reading, rows
+from affcli.store.comparing import by_number, differences
+from affcli.store.connection import Database, insert_many, insert_one, mappings, numbered
 from affcli.store.counting import count_use
-from affcli.store.learning import new_learning_run
-from affcli.store.mapping import (
-    reading_what_was_written,
-    settings_key,
-    step_row,
-    to_json,
-    trial_end_columns,
-    trial_row,
+from affcli.store.learning import insert_tools, selected_runs
+from affcli.store.packing import PackedTrial, pack_trial
+from affcli.store.tables import (
+    affordance,
+    learning_run,
+    replication,
+    session,
+    step,
+    tool,
+    trial,
+    verification,
 )
-from affcli.store.packing import PackedRobot, PackedTrial, pack_robot, pack_trial
-from affcli.store.rows import SessionRow
-from affcli.store.tables import affordance, behavior, learning_run, session, step, trial
-
-SessionKind = Literal["solve", "break-tool", "reproduce"]
-"""Which command a session is."""
 
 
 @dataclass(frozen=True, slots=True)
-class SessionInfo:
-    """One command that produced trials or a reproduction.
+class Trials:
+    """Testing trials, with the steps of each."""
 
-    Args:
-        id: its number in the store.
-        kind: which command: ``solve``, ``break-tool`` or ``reproduce``.
-        seed: of all it did.
-        robots: how many; 1 unless it is a reproduction.
-        settings: canonical JSON.
-        versions: what it was made with.
-        status: ``running`` or ``done``.
-        started_at, finished_at: ISO text, UTC.
-    """
+    database: Database
 
-    id: int
-    kind: str
-    seed: int
-    robots: int
-    settings: str
-    versions: dict[str, str]
-    status: str
-    started_at: str
-    finished_at: str | None
-
-
-class Trials(Connected):
-    """The part of the store that keeps sessions, trials and steps."""
-
-    def begin_session(
-        self,
-        kind: SessionKind,
-        seed: int,
-        robots: int,
-        settings: str,
-        versions: Mapping[str, str],
-        now: str,
-    ) -> int:
-        """Return the id of a new session; of a reproduction begun before, that of the old one.
-
-        Args:
-            kind: which command.
-            seed: of all it will do.
-            robots: how many; 1 unless it is a reproduction.
-            settings: canonical JSON.
-            versions: what it is made with.
-            now: ISO text, UTC.
-        """
-        row = SessionRow(
-            kind=kind,
-            seed=seed,
-            robots=robots,
-            settings=settings,
-            settings_key=settings_key(settings),
-            versions=to_json(versions),
-            status="running",
-            started_at=now,
-            finished_at=None,
-        )
-        with self.writing() as connection:
-            if kind == "reproduce":
-                found = connection.execute(_sessions_like(kind, seed, robots, settings)).first()
-                if found is not None:
-                    return int(found.id)
-            return insert_one(connection, session, row)
-
-    def find_session(
-        self, kind: SessionKind, seed: int, robots: int, settings: str
-    ) -> SessionInfo | None:
-        """Return the latest session of these arguments, None when there is none."""
-        with self.reading() as connection:
-            wanted = _sessions_like(kind, seed, robots, settings)
-            row = connection.execute(wanted).mappings().first()
-        return None if row is None else _session_info(row)
-
-    def sessions(self, kind: SessionKind | None = None) -> tuple[SessionInfo, ...]:
-        """Return the sessions, all or of one kind, oldest first."""
-        wanted = sa.select(session).order_by(session.c.id)
-        if kind is not None:
-            wanted = wanted.where(session.c.kind == kind)
-        return tuple(map(_session_info, self.mappings(wanted)))
-
-    def finish_session(self, session_id: int, now: str) -> None:
-        """Mark a session as done; one that was done before stays as it is."""
-        with self.writing() as connection:
-            connection.execute(
-                sa.update(session)
-                .filter_by(id=session_id, status="running")
-                .values(status="done", finished_at=now)
-            )
-
-    def begin_trial(
+    def begin(
         self, session_id: int, run_id: int, spec: TrialSpec, calibration: str | None = None
     ) -> int:
         """Return the id of a new trial without steps.
@@ -139,12 +47,18 @@ class Trials(Connected):
             spec: which trial.
             calibration: of the camera it sees through, as JSON; None without one.
         """
-        row = trial_row(session_id, run_id, spec, calibration)
-        with self.writing() as connection:
-            return insert_one(connection, trial, row)
+        part_of = {"session_id": session_id, "learning_run_id": run_id}
+        with self.database.writing() as connection:
+            insert_tools(connection, spec)
+            return insert_one(connection, trial, rows.trial_row(spec, calibration) | part_of)
 
     def save_step(
-        self, trial_id: int, spec: TrialSpec, record: StepRecord, truth: Truth, affordance_id: int
+        self,
+        trial_id: int,
+        spec: TrialSpec,
+        record: StepRecord,
+        truth: Truth | None,
+        affordance_id: int,
     ) -> None:
         """Save one step, and the counters it changed, in one transaction.
 
@@ -154,24 +68,25 @@ class Trials(Connected):
             trial_id: the trial.
             spec: which trial.
             record: the step.
-            truth: where the attractor truly was.
+            truth: where the attractor truly was; None in a world that does not tell.
             affordance_id: the row that was tried, in the store.
 
         Raises:
             DatabaseError: another process changed the counters meanwhile; nothing is saved.
         """
-        with self.writing() as connection:
+        row = rows.step_row(trial_id, affordance_id, record, truth, None)
+        with self.database.writing() as connection:
             if spec.counters is Counters.STORED:
-                count_use(connection, self.path, record, affordance_id, "steps")
-            insert_one(connection, step, step_row(trial_id, affordance_id, record, truth, None))
+                count_use(connection, self.database.path, record, affordance_id, "steps")
+            insert_many(connection, step, [row])
 
-    def end_trial(self, trial_id: int, end: TrialEnd) -> None:
+    def end(self, trial_id: int, end: TrialEnd) -> None:
         """Save how a trial ended."""
-        with self.writing() as connection:
-            values = trial_end_columns(end)
+        with self.database.writing() as connection:
+            values = rows.trial_end_row(end)
             connection.execute(sa.update(trial).filter_by(id=trial_id).values(values))
 
-    def save_trials(
+    def save_all(
         self,
         session_id: int,
         run_id: int,
@@ -189,61 +104,189 @@ class Trials(Connected):
         Returns:
             Their numbers in the store.
         """
-        with self.writing() as connection:
-            packed = [pack_trial(record) for record in trials]
-            return _insert_trials(connection, session_id, run_id, packed, affordance_ids)
+        packed = [pack_trial(record) for record in trials]
+        with self.database.writing() as connection:
+            return insert_trials(connection, session_id, run_id, packed, affordance_ids)
 
-    def saved_robots(self, session_id: int) -> frozenset[int]:
-        """Return the numbers of the robots that a reproduction has saved already."""
-        wanted = sa.select(learning_run.c.robot).distinct().where(_part_of(session_id))
-        with self.reading() as connection:
-            return frozenset(connection.scalars(wanted))
+    def trial(self, trial_id: int) -> TrialInfo:
+        """Return a testing trial.
 
-    def save_robot(
-        self,
-        session_id: int,
-        robot: RobotRecord | PackedRobot,
-        versions: Mapping[str, str],
-        now: str,
-    ) -> bool:
-        """Save the whole life of one robot of a reproduction in one transaction.
+        Raises:
+            UsageError: there is none of that number; the message says which there are.
+        """
+        with self.database.reading() as connection:
+            numbered(connection, sa.select(trial.c.id), trial, "trial", trial_id)
+            return _infos(connection, trial.c.id == trial_id)[0]
+
+    def trials(
+        self, *, session_id: int | None = None, run_id: int | None = None
+    ) -> tuple[TrialInfo, ...]:
+        """Return testing trials, oldest first.
 
         Args:
-            session_id: the reproduction.
-            robot: its learning runs and its trials; packed when another process lived them.
-            versions: what it was made with.
-            now: ISO text, UTC.
+            session_id: only those of this session.
+            run_id: only those that used the table of this learning run.
+        """
+        named = ((trial.c.session_id, session_id), (trial.c.learning_run_id, run_id))
+        with self.database.reading() as connection:
+            return _infos(connection, *(c == value for c, value in named if value is not None))
+
+    def steps(self, trial_id: int) -> tuple[StoredStep, ...]:
+        """Return the steps of a trial with the rows they tried."""
+        return self._steps(step.c.trial_id == trial_id, f"trial {trial_id}")
+
+    def steps_of_row(self, row_id: int) -> tuple[StoredStep, ...]:
+        """Return the steps that tried a row of an affordance table, by trial and number."""
+        return self._steps(step.c.affordance_id == row_id, f"a step that tried affordance {row_id}")
+
+    def _steps(self, condition: sa.ColumnElement[bool], which: str) -> tuple[StoredStep, ...]:
+        """Return the steps for which the condition holds, by trial and number."""
+        chosen = sa.select(step).where(condition).order_by(step.c.trial_id, step.c.number)
+        tried = sa.select(affordance).where(
+            affordance.c.id.in_(sa.select(step.c.affordance_id).where(condition))
+        )
+        with self.database.reading() as connection:
+            steps = mappings(connection, chosen)
+            found = mappings(connection, tried)
+        with reading.reading_what_was_written(which):
+            made = {row["id"]: reading.affordance(row) for row in found}
+            return tuple(
+                reading.stored_step(
+                    row,
+                    replace(
+                        made[row["affordance_id"]],
+                        times_used=row["times_used_before"],
+                        times_successful=row["times_successful_before"],
+                    ),
+                )
+                for row in steps
+            )
+
+    def scene(self, trial_id: int, number: int) -> StepScene:
+        """Return one step of a trial.
+
+        Raises:
+            UsageError: no such trial, or no such step in it, or its world does not tell where the
+                attractor truly was.
+        """
+        info, steps = self.trial(trial_id), self.steps(trial_id)
+        if not 1 <= number <= len(steps):
+            known = f"it has steps 1 to {len(steps)}" if steps else "it has none"
+            raise UsageError(f"no step {number} in trial {trial_id}; {known}")
+        this, spec = steps[number - 1], info.spec
+        if this.true_start is None or this.true_end is None:
+            raise UsageError(f"trial {trial_id}: its world does not tell where the attractor was")
+        return StepScene(
+            *(f"Trial {trial_id}, step {number} of {len(steps)}", (trial_id, number)),
+            learned=info.learned,
+            tool=spec.tool,
+            held=spec.held,
+            goal=spec.task.goal,
+            seed=spec.seed,
+            robot=spec.robot,
+            wrist_before=steps[number - 2].wrist_end if number > 1 else None,
+            wrist_start=this.wrist_start,
+            wrist_end=this.wrist_end,
+            attractor_start=this.true_start,
+            attractor_end=this.true_end,
+            call=this.row.exploratory,
+            blocked=this.status is None,
+        )
+
+    def table_before(self, trial_id: int) -> tuple[AffordanceTable, dict[int, int]]:
+        """Return the affordance table that a trial which updates the stored counters began with.
+
+        A row has been used once when it was made, and once in each step of such trials and each try
+        of such verifications before. Of two that ran at the same time the one begun first is taken
+        to have ended first.
 
         Returns:
-            False when this robot was saved before; nothing is written then.
+            The table; and the id of each row in the store by its learning step.
         """
-        packed = robot if isinstance(robot, PackedRobot) else pack_robot(robot)
-        with self.writing() as connection:
-            is_there = sa.select(learning_run.c.id).where(
-                _part_of(session_id), learning_run.c.robot == packed.robot
+        t, s, v, tried = trial.c, step.c, verification.c, replication.c
+        run = sa.select(t.learning_run_id).where(t.id == trial_id).scalar_subquery()
+        uses = (
+            sa.select(s.affordance_id, s.replicated)
+            .select_from(step.join(trial, t.id == s.trial_id))
+            .where(t.learning_run_id == run, t.id < trial_id, t.counters == Counters.STORED.value)
+            .union_all(
+                sa.select(tried.affordance_id, tried.replicated)
+                .select_from(replication.join(verification, v.id == tried.verification_id))
+                .where(v.learning_run_id == run, v.after_trial < trial_id)
             )
-            if connection.execute(is_there.limit(1)).first() is not None:
-                return False
-            for run in packed.runs:
-                row = new_learning_run(run.spec, versions, now, session_id)._replace(
-                    status="done",
-                    behaviors=len(run.behaviors),
-                    rows=len(run.affordances),
-                    resets=run.resets,
-                    redraws=run.redraws,
-                    robot_seconds=run.robot_seconds,
-                    finished_at=now,
-                    calibration=packed.calibration,
-                )
-                run_id = insert_one(connection, learning_run, row)
-                insert_many(connection, behavior, [(run_id, *row) for row in run.behaviors])
-                insert_many(connection, affordance, [(run_id, *row) for row in run.affordances])
-                ids = _affordance_ids(connection, run_id)
-                _insert_trials(connection, session_id, run_id, run.trials, ids)
-            return True
+            .subquery()
+        )
+        sums = sa.select(
+            uses.c.affordance_id, sa.func.count(), sa.func.sum(uses.c.replicated)
+        ).group_by(uses.c.affordance_id)
+        with self.database.reading() as connection:
+            wanted = sa.select(affordance).where(affordance.c.learning_run_id == run)
+            learned = mappings(connection, wanted)
+            used = {row_id: (tries, good) for row_id, tries, good in connection.execute(sums)}
+        with reading.reading_what_was_written(f"the affordance table before trial {trial_id}"):
+            counted = [(row, *used.get(row["id"], (0, 0))) for row in learned]
+            table = AffordanceTable(
+                reading.affordance({**row, "times_used": 1 + tries, "times_successful": 1 + good})
+                for row, tries, good in counted
+            )
+        return table, {row["step"]: row["id"] for row in learned}
+
+    def excluded_before(
+        self, trial_id: int, threshold: float = PROBABILITY_THRESHOLD
+    ) -> frozenset[int]:
+        """Return the rows that a trial found excluded: their ids in the store.
+
+        Empty for a trial that started from the table as learned.
+
+        Args:
+            trial_id: the trial.
+            threshold: of its planner: rows of this replication probability or less are excluded.
+        """
+        counters = sa.select(trial.c.counters).where(trial.c.id == trial_id)
+        with self.database.reading() as connection:
+            if connection.scalar(counters) != Counters.STORED.value:
+                return frozenset()
+        table, ids = self.table_before(trial_id)
+        probable = table.more_probable_than(threshold)
+        return frozenset(
+            ids[row.step] for row, kept in zip(table, probable, strict=True) if not kept
+        )
+
+    def differences(
+        self,
+        trial_id: int,
+        steps: Sequence[TrialStep],
+        end: TrialEnd | None,
+        affordance_ids: Mapping[int, int],
+    ) -> tuple[Difference, ...]:
+        """Return where a trial that was done again differs from its record.
+
+        Args:
+            trial_id: the record.
+            steps: what was done.
+            end: how it ended; None when that is not to be compared.
+            affordance_ids: of each row of the table by its learning step.
+        """
+        again = {
+            one.record.number: rows.step_row(trial_id, affordance_ids[one.record.row.step], *one)
+            for one in steps
+        }
+        with self.database.reading() as connection:
+            wanted = sa.select(step).filter_by(trial_id=trial_id)
+            kept = by_number(mappings(connection, wanted), "number")
+            (ending,) = mappings(connection, sa.select(trial).filter_by(id=trial_id))
+        ended = {} if end is None else rows.trial_end_row(end)
+        return (
+            *differences("step", kept, again),
+            *(
+                Difference(0, column, ending[column], value)
+                for column, value in ended.items()
+                if ending[column] != value
+            ),
+        )
 
 
-def _insert_trials(
+def insert_trials(
     connection: sa.Connection,
     session_id: int,
     run_id: int,
@@ -251,11 +294,12 @@ def _insert_trials(
     affordance_ids: Mapping[int, int],
 ) -> list[int]:
     """Insert trials with their steps; return the trials' numbers."""
+    insert_tools(connection, *trials)
     numbers: list[int] = []
-    steps: list[tuple[object, ...]] = []
+    steps: list[rows.Row] = []
     for packed in trials:
-        row = packed.row._replace(session_id=session_id, learning_run_id=run_id)
-        trial_id = insert_one(connection, trial, row)
+        part_of = {"session_id": session_id, "learning_run_id": run_id}
+        trial_id = insert_one(connection, trial, {**packed.row, **part_of})
         numbers.append(trial_id)
         steps += [
             (trial_id, affordance_ids[tried], *row)
@@ -265,36 +309,20 @@ def _insert_trials(
     return numbers
 
 
-def _affordance_ids(connection: sa.Connection, run_id: int) -> dict[int, int]:
-    """Return the ids of a run's affordances by learning step."""
-    columns = sa.select(affordance.c.step, affordance.c.id).filter_by(learning_run_id=run_id)
-    return {row.step: row.id for row in connection.execute(columns)}
-
-
-def _part_of(session_id: int) -> sa.ColumnElement[bool]:
-    """Be a learning run of a reproduction, as the unique index spells it."""
-    return sa.func.coalesce(learning_run.c.session_id, 0) == session_id
-
-
-def _sessions_like(kind: str, seed: int, robots: int, settings: str) -> sa.Select[Any]:
-    """Select the sessions of these arguments, latest first."""
-    key = settings_key(settings)
-    same = sa.select(session).filter_by(kind=kind, seed=seed, robots=robots, settings_key=key)
-    return same.order_by(session.c.id.desc())
-
-
-def _session_info(row: sa.RowMapping) -> SessionInfo:
-    """Return what a row of session says."""
-    with reading_what_was_written(f"session {row['id']}"):
-        if not (0 <= row["seed"] <= LARGEST_SEED and 0 < row["robots"] <= MOST_ROBOTS):
-            raise ValueError("a seed or a number of robots out of range")
-        return SessionInfo(
-            versions=json.loads(row["versions"]),
-            **{
-                name: row[name]
-                for name in (
-                    *("id", "kind", "seed", "robots", "settings", "status"),
-                    *("started_at", "finished_at"),
-                )
-            },
+def _infos(connection: sa.Connection, *conditions: sa.ColumnElement[bool]) -> tuple[TrialInfo, ...]:
+    """Return the trials for which all conditions hold, oldest first."""
+    used = sa.select(trial.c.learning_run_id).where(*conditions)
+    runs = mappings(connection, selected_runs().where(learning_run.c.id.in_(used)))
+    wanted = (
+        sa.select(trial, session.c.kind, session.c.versions, tool.c.definition)
+        .select_from(
+            trial.join(session, session.c.id == trial.c.session_id).outerjoin(
+                tool, tool.c.key == trial.c.shape_key
+            )
         )
+        .where(*conditions)
+        .order_by(trial.c.id)
+    )
+    found = mappings(connection, wanted)
+    learned = {row["id"]: reading.learning_run(row).spec for row in runs}
+    return tuple(reading.trial(row, learned[row["learning_run_id"]]) for row in found)

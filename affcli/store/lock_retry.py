@@ -1,4 +1,4 @@
-"""Waiting for a lock that another process holds."""
+"""Asking again for a lock that another process holds: the one way in which the store waits."""
 
 import time
 from collections.abc import Callable
@@ -8,15 +8,15 @@ from affcli.store.faults import is_busy
 
 T = TypeVar("T")
 
-PATIENCE = 90.0
+LONGEST_WAIT = 90.0
 """Seconds to wait for a lock unless told otherwise: longer than anybody reads in one go."""
 
 ATTEMPT = 0.25
-"""Seconds SQLite itself waits for a lock before Python asks again. SQLite waits deaf to signals:
-with the whole patience in one attempt, ctrl-C would not be heard for half a minute."""
+"""Seconds SQLite itself waits for a lock before Python asks again. SQLite hears no signal while it
+waits: with the whole wait in one attempt, ctrl-C would be heard half a minute late."""
 
 
-def patiently(action: Callable[[], T], seconds: float) -> T:
+def retried(action: Callable[[], T], seconds: float) -> T:
     """Return what `action` gives, asking again while another process holds the lock.
 
     Args:

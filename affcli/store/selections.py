@@ -2,65 +2,37 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 import sqlalchemy as sa
 
-from affcli.core.behavior import BehaviorCall
-from affcli.store.connection import Connected
-from affcli.store.mapping import params_to_json
-from affcli.store.query import Value
-from affcli.store.records import StoredRow, stored_row
+from affcli.core.records import StoredRow
+from affcli.core.row_filter import Cell, Column, Relation, RowFilter
+from affcli.store.connection import Database
+from affcli.store.reading import stored_row
+from affcli.store.rows import params_to_json
 from affcli.store.tables import affordance, behavior, learning_run, step, trial, wide
 
 Made = TypeVar("Made")
 
-Relation = Literal["rows", "behaviors", "trials", "steps"]
-"""What can be taken out: the view affordance_wide, or a table."""
-
-Comparison = Literal["<", "<=", ">", ">="]
-
-
-class Column(NamedTuple):
-    """A column by name, and of what kind its values are where they are not NULL."""
-
-    name: str
-    kind: type[int] | type[float] | type[str]
-
 
 @dataclass(frozen=True, slots=True)
-class RowFilter:
-    """Which rows of affordance tables are wanted.
+class Selections:
+    """What filters leave: rows to be listed, records to be taken out whole."""
 
-    Args:
-        runs: those of these learning runs; of all if None.
-        tool: those learned with this tool; with any if None.
-        behavior: those of this exploratory behavior, without parameters whatever they were.
-        probability: bounds within which the replication probability lies.
-        limit: no more than so many, the oldest; all if None.
-    """
+    database: Database
 
-    runs: tuple[int, ...] | None = None
-    tool: str | None = None
-    behavior: BehaviorCall | None = None
-    probability: tuple[tuple[Comparison, float], ...] = ()
-    limit: int | None = None
-
-
-class Selections(Connected):
-    """The part of the store that gives what filters leave."""
-
-    def select_rows(self, wanted: RowFilter) -> tuple[StoredRow, ...]:
+    def rows(self, wanted: RowFilter) -> tuple[StoredRow, ...]:
         """Return the rows that the filter leaves, oldest first."""
         ids = _rows(wanted).with_only_columns(wide.c.id)
         rows = sa.select(affordance).where(affordance.c.id.in_(ids)).order_by(affordance.c.id)
-        return tuple(map(stored_row, self.mappings(rows)))
+        return tuple(map(stored_row, self.database.mappings(rows)))
 
     def extract(
         self,
         what: Relation,
         wanted: RowFilter,
-        write: Callable[[Sequence[Column], Iterator[tuple[Value, ...]]], Made],
+        write: Callable[[Sequence[Column], Iterator[tuple[Cell, ...]]], Made],
     ) -> Made:
         """Return what `write` makes of all columns of what the filter leaves.
 
@@ -73,7 +45,7 @@ class Selections(Connected):
             write: makes something of the columns and their values.
         """
         statement, relation = _STATEMENTS[what](wanted), _RELATIONS[what]
-        with self.reading() as connection:
+        with self.database.reading() as connection:
             described = connection.exec_driver_sql(f"PRAGMA table_info({relation.name})").all()
             columns = [Column(name, _kind(declared)) for _, name, declared, *_ in described]
             return write(columns, (tuple(row) for row in connection.execute(statement)))

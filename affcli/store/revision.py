@@ -1,18 +1,18 @@
-"""What makes a SQLite file one of affcli's, and which schema it has. Standard library only."""
+"""What makes a SQLite file one of affcli's, and which schema it has."""
 
 import sqlite3
 from pathlib import Path
 
 from affcli.errors import DatabaseError, one_line
-from affcli.store.schema import COLUMNS, VIEWS, missing_column
+from affcli.store.columns import COLUMNS
 
 APPLICATION_ID = int.from_bytes(b"affc", "big")
 """``PRAGMA application_id`` of affcli's databases."""
 
-REVISION = "0003"
+REVISION = "0004"
 """The revision of ``migrations/`` that this code reads and writes."""
 
-RELATIONS = frozenset({*COLUMNS, *VIEWS})
+RELATIONS = frozenset({*COLUMNS, "affordance_table", "affordance_wide"})
 """The tables and views of that revision."""
 
 
@@ -38,8 +38,6 @@ def stored_revision(connection: sqlite3.Connection, path: Path) -> str | None:
         if len(revisions) == 1:
             revision = str(revisions[0][0])
             missing = min(RELATIONS - names, default="") if revision == REVISION else ""
-            if revision == REVISION and not missing:
-                missing = missing_column(connection)
             if not missing:
                 return revision
     raise DatabaseError(

@@ -40,7 +40,7 @@ class Fact:
     remedy: str = ""
 
 
-def place_facts(path: Path) -> tuple[Fact, ...]:
+def environment_facts(path: Path) -> tuple[Fact, ...]:
     """Look at where a database is or shall be, without changing anything.
 
     Args:

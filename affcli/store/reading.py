@@ -1,0 +1,248 @@
+"""From rows to records. A value is checked once, here, where it is read."""
+
+import json
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from functools import lru_cache
+from typing import Any, cast
+
+from affcli.core.affordance import Affordance
+from affcli.core.behavior import BehaviorCall, BehaviorName, Repertoire, repertoire_from_json
+from affcli.core.choice import Reason, Reasons
+from affcli.core.geometry import Point, Pose
+from affcli.core.identity import Component
+from affcli.core.observation import Movement, Observation, SensorKind
+from affcli.core.records import (
+    LearningRunInfo,
+    SessionInfo,
+    StoredReplication,
+    StoredRow,
+    StoredStep,
+    TrialInfo,
+)
+from affcli.core.specs import Counters, LearningSpec, Protocol, SessionSpec, TrialSpec
+from affcli.core.task import GoalRegion, Task
+from affcli.core.tool import Tool, tool_from_canonical, unknown_tool
+from affcli.core.trial import Outcome
+from affcli.errors import BadInputError, DatabaseError
+from affcli.store.columns import END_OBSERVATION, START_OBSERVATION
+
+Columns = Mapping[str, Any]
+"""A row by the names of its columns."""
+
+
+@contextmanager
+def reading_what_was_written(place: str) -> Iterator[None]:
+    """Say so when a value in the database is one that no version of affcli writes.
+
+    Args:
+        place: which record, for the message.
+    """
+    try:
+        yield
+    except (
+        *(ValueError, TypeError, KeyError, AttributeError, OverflowError, BadInputError),
+        RecursionError,  # JSON nested a thousand deep
+    ) as error:
+        raise DatabaseError(
+            f"{place} holds a value that affcli did not write; restore a copy of the database"
+        ) from error
+
+
+@lru_cache(maxsize=1024)
+def behavior_call(name: str, params: str) -> BehaviorCall:
+    """Return the call that a name and the JSON of its parameters stand for."""
+    return BehaviorCall.of(BehaviorName(name), {k: float(v) for k, v in json.loads(params).items()})
+
+
+@lru_cache(maxsize=256)
+def repertoire(text: str) -> Repertoire:
+    """Return the behaviors of a learning run."""
+    return repertoire_from_json(json.loads(text))
+
+
+@lru_cache(maxsize=256)
+def component(text: str) -> Component:
+    """Return a part by the text of its name and parameters."""
+    return Component.parse(text)
+
+
+@lru_cache(maxsize=256)
+def tool(name: str, definition: str | None) -> Tool:
+    """Return a tool by its name and its value; one without a shape where that is not stored."""
+    return unknown_tool(name) if definition is None else tool_from_canonical(json.loads(definition))
+
+
+def reasons(text: str) -> Reasons:
+    """Return what a planner went by."""
+    return tuple(Reason(**one) for one in json.loads(text))
+
+
+def pose(row: Columns, name: str) -> Pose:
+    """Return a pose from three columns."""
+    return Pose(row[f"{name}_x"], row[f"{name}_y"], row[f"{name}_angle"])
+
+
+def point(row: Columns, name: str) -> Point:
+    """Return a place from two columns."""
+    return Point(row[f"{name}_x"], row[f"{name}_y"])
+
+
+def point_or_none(row: Columns, name: str) -> Point | None:
+    """Return a place from two columns; None in a world that did not tell."""
+    return None if row[f"{name}_x"] is None else point(row, name)
+
+
+def _flag(stored: int | None) -> bool | None:
+    """Return what a column says that may say nothing."""
+    return None if stored is None else bool(stored)
+
+
+def affordance(row: Columns) -> Affordance:
+    """Return an affordance with the counters that stand in the row."""
+    return Affordance(
+        step=row["step"],
+        binding=behavior_call(row["binding_behavior"], row["binding_params"]),
+        exploratory=behavior_call(row["exploratory_behavior"], row["exploratory_params"]),
+        start=Observation(*(row[name] for name in START_OBSERVATION)),
+        end=Observation(*(row[name] for name in END_OBSERVATION)),
+        truncated=bool(row["truncated"]),
+        times_used=row["times_used"],
+        times_successful=row["times_successful"],
+        wrist_angle=row["wrist_angle"],
+        travel=point(row, "travel"),
+    )
+
+
+def stored_row(row: Columns) -> StoredRow:
+    """Return a row of an affordance table."""
+    with reading_what_was_written(f"affordance {row['id']}"):
+        return StoredRow(row["id"], row["learning_run_id"], row["tool"], affordance(row))
+
+
+def _parts(row: Columns) -> dict[str, Any]:
+    """Return the parts that the specs of sessions and learning runs share."""
+    dict(json.loads(row["settings"]))  # a mapping, whatever its keys
+    return {
+        "seed": row["seed"],
+        "settings": row["settings"],
+        "world": component(row["world"]),
+        "repertoire": repertoire(row["repertoire"]),
+        "binding": behavior_call(row["binding_behavior"], row["binding_params"]),
+        "explorer": component(row["explorer"]),
+        "sensor": cast(SensorKind, row["sensor"]),
+    }
+
+
+def learning_spec(row: Columns) -> LearningSpec:
+    """Return what a learning run is a function of; `row` has the definition of its tool too."""
+    return LearningSpec(
+        held=tool(row["tool"], row["definition"]),
+        robot=row["robot"],
+        hours=row["hours"],
+        behaviors=row["behaviors_limit"],
+        **_parts(row),
+    )
+
+
+def learning_run(row: Columns) -> LearningRunInfo:
+    """Return a learning run; `row` has the definition of its tool too."""
+    names = (
+        *("id", "session_id", "status", "behaviors", "rows", "resets", "redraws"),
+        *("robot_seconds", "started_at", "finished_at"),
+    )
+    with reading_what_was_written(f"learning run {row['id']}"):
+        return LearningRunInfo(
+            spec=learning_spec(row),
+            versions=dict(json.loads(row["versions"])),
+            checkpoint=None if row["checkpoint"] is None else dict(json.loads(row["checkpoint"])),
+            **{name: row[name] for name in names},
+        )
+
+
+def session(row: Columns) -> SessionInfo:
+    """Return a session."""
+    with reading_what_was_written(f"session {row['id']}"):
+        spec = SessionSpec(
+            kind=row["kind"],
+            robots=row["robots"],
+            planner=component(row["planner"]),
+            task_set=row["task_set"],
+            **_parts(row),
+        )
+        names = ("id", "status", "started_at", "finished_at")
+        versions = dict(json.loads(row["versions"]))
+        return SessionInfo(spec=spec, versions=versions, **{name: row[name] for name in names})
+
+
+def trial(row: Columns, learned: LearningSpec) -> TrialInfo:
+    """Return a trial; `row` has its session's kind and versions, and the shape's definition."""
+    with reading_what_was_written(f"trial {row['id']}"):
+        goal = GoalRegion(row["goal"], point(row, "goal"), row["goal_half_width"])
+        spec = TrialSpec(
+            protocol=Protocol(row["protocol"]),
+            tool=row["tool"],
+            held=tool(row["shape"], row["definition"]),
+            task=Task(row["task_set"], goal, row["start"], point(row, "start")),
+            seed=row["seed"],
+            robot=row["robot"],
+            counters=Counters(row["counters"]),
+            planner=component(row["planner"]),
+            sensor=cast(SensorKind, row["sensor"]),
+            world=component(row["world"]),
+        )
+        last = row["last_reasons"]
+        return TrialInfo(
+            id=row["id"],
+            session_id=row["session_id"],
+            session_kind=row["kind"],
+            run_id=row["learning_run_id"],
+            spec=spec,
+            learned=learned,
+            versions=dict(json.loads(row["versions"])),
+            outcome=None if row["outcome"] is None else Outcome(row["outcome"]),
+            steps=row["steps"],
+            robot_seconds=row["robot_seconds"],
+            last_reasons=None if last is None else reasons(last),
+        )
+
+
+def stored_step(row: Columns, tried: Affordance) -> StoredStep:
+    """Return a step of a trial, and the row it tried with its counters before."""
+    names = (
+        *("trial_id", "number", "clock", "affordance_id", "placing_status", "status"),
+        *("seen_distance", "times_used_after", "times_successful_after"),
+    )
+    return StoredStep(
+        reasons=reasons(row["reasons"]),
+        row=tried,
+        regrasped=bool(row["regrasped"]),
+        wrist_start=pose(row, "wrist_start"),
+        wrist_end=pose(row, "wrist_end"),
+        seen_start=point(row, "start_object"),
+        seen_end=point(row, "end_object"),
+        true_start=point_or_none(row, "true_start"),
+        true_end=point_or_none(row, "true_end"),
+        expected=Movement(row["expected_dx"], row["expected_dy"], 0.0),
+        seen=Movement(row["seen_dx"], row["seen_dy"], 0.0),
+        replicated=bool(row["replicated"]),
+        died=bool(row["died"]),
+        lost=_flag(row["lost"]),
+        **{name: row[name] for name in names},
+    )
+
+
+def stored_replication(row: Columns) -> StoredReplication:
+    """Return a try of a verification; `row` has the name of the shape that was held too."""
+    return StoredReplication(
+        verification=row["verification_id"],
+        number=row["number"],
+        shape=row["shape"],
+        expected=Movement(row["expected_dx"], row["expected_dy"], 0.0),
+        seen=Movement(row["seen_dx"], row["seen_dy"], 0.0),
+        replicated=bool(row["replicated"]),
+        blocked=row["status"] is None,
+        died=bool(row["died"]),
+        before=(row["times_successful_before"], row["times_used_before"]),
+        after=(row["times_successful_after"], row["times_used_after"]),
+    )

@@ -1,0 +1,129 @@
+"""Sessions: commands that produced trials, and reproductions with the lives of their robots."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import sqlalchemy as sa
+
+from affcli.core.records import SessionInfo
+from affcli.core.specs import RobotRecord, SessionSpec
+from affcli.store import reading, rows
+from affcli.store.connection import Database, insert_many, insert_one
+from affcli.store.learning import insert_run
+from affcli.store.packing import PackedRobot, pack_robot
+from affcli.store.tables import affordance, behavior, learning_run, session
+from affcli.store.trials import insert_trials
+
+REPRODUCE = "reproduce"
+"""The kind of a session that is its robots' whole lives."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sessions:
+    """Sessions, and the robots of reproductions."""
+
+    database: Database
+
+    def begin(self, spec: SessionSpec, versions: Mapping[str, str], now: str) -> int:
+        """Return the id of a new session; of a reproduction begun before, that of the old one.
+
+        Args:
+            spec: what it is a function of.
+            versions: what it is made with.
+            now: ISO text, UTC.
+        """
+        with self.database.writing() as connection:
+            if spec.kind == REPRODUCE:
+                found = connection.execute(_like(spec)).first()
+                if found is not None:
+                    return int(found.id)
+            return insert_one(connection, session, rows.session_row(spec, versions, now))
+
+    def find(self, spec: SessionSpec) -> SessionInfo | None:
+        """Return the latest session of a spec, None when there is none."""
+        found = self.database.mappings(_like(spec).limit(1))
+        return reading.session(found[0]) if found else None
+
+    def all(self, kind: str | None = None) -> tuple[SessionInfo, ...]:
+        """Return the sessions, all or of one kind, oldest first."""
+        wanted = sa.select(session).order_by(session.c.id)
+        if kind is not None:
+            wanted = wanted.where(session.c.kind == kind)
+        return tuple(map(reading.session, self.database.mappings(wanted)))
+
+    def finish(self, session_id: int, now: str) -> None:
+        """Mark a session as done; one that was done before stays as it is."""
+        with self.database.writing() as connection:
+            connection.execute(
+                sa.update(session)
+                .filter_by(id=session_id, status="running")
+                .values(status="done", finished_at=now)
+            )
+
+    def saved_robots(self, session_id: int) -> frozenset[int]:
+        """Return the numbers of the robots that a reproduction has saved already."""
+        wanted = sa.select(learning_run.c.robot).distinct().where(_part_of(session_id))
+        with self.database.reading() as connection:
+            return frozenset(connection.scalars(wanted))
+
+    def save_robot(
+        self,
+        session_id: int,
+        robot: RobotRecord | PackedRobot,
+        versions: Mapping[str, str],
+        now: str,
+    ) -> bool:
+        """Save the whole life of one robot of a reproduction in one transaction.
+
+        Args:
+            session_id: the reproduction.
+            robot: its learning runs and its trials; packed when another process lived them.
+            versions: what it was made with.
+            now: ISO text, UTC.
+
+        Returns:
+            False when this robot was saved before; nothing is written then.
+        """
+        packed = robot if isinstance(robot, PackedRobot) else pack_robot(robot)
+        with self.database.writing() as connection:
+            is_there = sa.select(learning_run.c.id).where(
+                _part_of(session_id), learning_run.c.robot == packed.robot
+            )
+            if connection.execute(is_there.limit(1)).first() is not None:
+                return False
+            for run in packed.runs:
+                row = {
+                    **rows.learning_run_row(run.spec, versions, now, session_id),
+                    "status": "done",
+                    "finished_at": now,
+                    "calibration": packed.calibration,
+                    "behaviors": len(run.behaviors),
+                    "rows": len(run.affordances),
+                    "resets": run.resets,
+                    "redraws": run.redraws,
+                    "robot_seconds": run.robot_seconds,
+                }
+                run_id = insert_run(connection, row, run.spec)
+                insert_many(connection, behavior, [(run_id, *one) for one in run.behaviors])
+                insert_many(connection, affordance, [(run_id, *one) for one in run.affordances])
+                ids = _affordance_ids(connection, run_id)
+                insert_trials(connection, session_id, run_id, run.trials, ids)
+            return True
+
+
+def _affordance_ids(connection: sa.Connection, run_id: int) -> dict[int, int]:
+    """Return the ids of a run's affordances by learning step."""
+    columns = sa.select(affordance.c.step, affordance.c.id).filter_by(learning_run_id=run_id)
+    return {row.step: row.id for row in connection.execute(columns)}
+
+
+def _part_of(session_id: int) -> sa.ColumnElement[bool]:
+    """Be a learning run of a reproduction, as the unique index spells it."""
+    return sa.func.coalesce(learning_run.c.session_id, 0) == session_id
+
+
+def _like(spec: SessionSpec) -> sa.Select[Any]:
+    """Select the sessions of a spec, latest first."""
+    same = sa.select(session).filter_by(kind=spec.kind, key=spec.key)
+    return same.order_by(session.c.id.desc())
