@@ -137,7 +137,7 @@ def settings_from(differing: Mapping[str, Any], source: str = "the stored settin
             quotes `source`.
     """
     known, now = known_settings(), {first: name for name, first in RENAMED.items()}
-    values, unknown = _first_defaults(), []
+    values, unknown = first_defaults(), []
     for name, value in differing.items():
         if not isinstance(value, Value):
             raise BadInputError(
@@ -266,14 +266,14 @@ def _defaults() -> dict[str, Value]:
     return {name: one.default for name, one in known_settings().items()}
 
 
-def _first_defaults() -> dict[str, Value]:
+def first_defaults() -> dict[str, Value]:
     """Return the defaults number 1, which stored settings differ from."""
     return _defaults() | {name: former[0] for name, former in CHANGED.items()}
 
 
 def _unusual(settings: Settings) -> dict[str, Value]:
     """Return what differs from the defaults number 1, sorted by the first names."""
-    first = _first_defaults()
+    first = first_defaults()
     values = settings.values()
     own = {RENAMED.get(n, n): value for n, value in values.items() if value != first[n]}
     return dict(sorted({**own, **dict(settings.unknown)}.items()))

@@ -3,7 +3,6 @@
 A part is found by the tuple PARTS of a file in its room: adding one is adding a file.
 """
 
-import difflib
 import pkgutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 from affcli.core.behavior import BehaviorCall, Repertoire
 from affcli.core.identity import Component
+from affcli.core.names import one_of
 from affcli.core.part import Kind, Part
 from affcli.errors import BadInputError, UsageError, one_line
 
@@ -61,14 +61,7 @@ def part(kind: Kind, name: str) -> Part:
         UsageError: there is none such; the message gives the nearest names.
     """
     known = parts(kind)
-    if name not in known:
-        singular = kind.removesuffix("s")
-        near = difflib.get_close_matches(name[:40].lower(), known, n=3, cutoff=0.4) or list(known)
-        raise UsageError(
-            f"no {singular} {one_line(name, 60)!r}; did you mean {' or '.join(near)}? "
-            f"(affcli list {kind})"
-        )
-    return known[name]
+    return known[one_of(kind.removesuffix("s"), name, known, f" (affcli list {kind})")]
 
 
 def component(kind: Kind, text: str) -> Component:

@@ -1,28 +1,35 @@
 """``affcli break-tool``: the tool breaks, the robot is not told, and adapts (§7.2)."""
 
 from affcli import lab
-from affcli.cli.database import learned_runs, opened, say_trials
+from affcli.cli.database import learned_runs, opened, say_trials, tool_or_default
 from affcli.cli.options import (
     DEFAULT_BROKEN,
     DEFAULT_DATABASE,
-    DEFAULT_TOOL,
+    DEFAULT_PLANNER,
+    DEFAULT_TASKS,
     AsJson,
     Becomes,
     Database,
     LearnedTool,
+    Planner,
+    Run,
     Seed,
+    TaskSet,
     TrialSensor,
 )
 from affcli.cli.terminal import now, progress, show_either
-from affcli.config import settings_from_json
+from affcli.core.tool import middle_x
 from affcli.errors import UsageError
 from affcli.report.breaking import broken_json, broken_tables
 
 
 def break_tool(
     *,
-    tool: LearnedTool = DEFAULT_TOOL,
+    tool: LearnedTool = None,
+    run: Run = None,
     becomes: Becomes = DEFAULT_BROKEN,
+    task: TaskSet = DEFAULT_TASKS,
+    planner: Planner = DEFAULT_PLANNER,  # type: ignore[assignment]  # parsed like any other
     seed: Seed = 0,
     sensor: TrialSensor = None,
     database: Database = DEFAULT_DATABASE,
@@ -33,20 +40,23 @@ def break_tool(
     Every trial starts from the table as learned and keeps its counters to itself. The same trials
     with the whole tool are done beside them, to compare.
     """
-    if becomes == tool:
-        raise UsageError(f"--becomes {becomes}: a broken {tool} must be another shape than it was")
     with opened(database, write=True) as store:
-        (run,) = learned_runs(store, tool, database)
-        with progress(f"{tool} becomes {becomes}", 32) as bar:
-            numbers, trials = [], []
-            for number, trial in lab.breaking.break_tool(store, run, becomes, seed, now, sensor):
+        (used,) = learned_runs(store, tool_or_default(tool, run), database, run)
+        name = used.spec.tool
+        if becomes == name:
+            raise UsageError(f"--becomes {name}: a broken {name} must be another tool than it was")
+        left = lab.run_parts.tool_of(used.spec, becomes)
+        events = lab.breaking.break_tool(store, used, left, seed, now, planner, sensor, task)
+        numbers, trials = [], []
+        with progress(f"{name} becomes {becomes}", 1.0) as bar:
+            for number, trial, share in events:
                 numbers.append(number)
                 trials.append(trial)
-                bar.update(len(trials), f"{len(trials)} of 32 trials")
-    side = lab.bench.missing_side(settings_from_json(run.spec.settings), tool, becomes)
+                bar.update(share, f"{len(trials)} trials")
+    side = middle_x(used.spec.held.parts_missing_in(left))
     show_either(
         as_json=as_json,
-        value=lambda: {"run": run.id, "trials": numbers, **broken_json(becomes, side, trials)},
+        value=lambda: {"run": used.id, "trials": numbers, **broken_json(becomes, side, trials)},
         tables=lambda: broken_tables(becomes, side, trials),
     )
     tried_in_vain = [

@@ -23,6 +23,7 @@ from affcli.core.geometry import Point
 from affcli.core.tool import Color
 from affcli.errors import BadInputError, UsageError, one_line
 from affcli.report.camera import calibration_tables
+from affcli.simulation.sensing import require_camera
 
 TURNS = (0, 90, 180, 270)
 LARGEST_GRID = 40
@@ -99,9 +100,9 @@ def calibrate(
     if out is not None:
         require_new(out, force=force)
 
-    lab.sensing.require_camera()
+    require_camera()
     if image is None:
-        found = lab.sensing.eye_of(load_settings(config), seed, 0).calibration
+        found = lab.viewing.eye_at(load_settings(config), seed).calibration
     else:
         pattern = lab.photographs.pattern_of(columns, rows, spacing, first, turn)
         found = lab.photographs.calibrate_picture(image, pattern, color, sensor_width)

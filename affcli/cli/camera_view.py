@@ -20,9 +20,10 @@ from affcli.cli.options import (
 from affcli.cli.terminal import say
 from affcli.config import load_settings
 from affcli.errors import UsageError, one_line
+from affcli.simulation.sensing import require_camera
 
 if TYPE_CHECKING:
-    from affcli.store import StepScene
+    from affcli.core.records import StepScene
 
 Out = Annotated[Path | None, typer.Option("--out", help="The picture, *.png.", metavar="FILE")]
 Video = Annotated[
@@ -78,7 +79,7 @@ def view(
     )
     _check_where(out, video, force=force)
 
-    lab.sensing.require_camera()
+    require_camera()
     settings = load_settings(config)
     scene = _stored_scene(database, trial, run, step)
     if scene is not None:
@@ -139,8 +140,8 @@ def _stored_scene(
     """Return a step of a trial or a behavior of a run from the database; None for neither."""
     if trial is not None:
         with opened(database) as store:
-            return store.step_scene(trial, step)
+            return store.trials.scene(trial, step)
     if run is not None:
         with opened(database) as store:
-            return store.behavior_scene(run, step)
+            return store.learning.scene(run, step)
     return None

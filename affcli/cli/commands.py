@@ -160,6 +160,18 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
         DB,
         Command("doctor", "doctor:doctor", "Say whether all is here that affcli needs."),
     ),
+    "Extend": (
+        Command(
+            "list",
+            "list_parts:list_parts",
+            "List the parts that a run can be made of: what each is, its parameters, its source.",
+        ),
+        Command(
+            "settings",
+            "settings:settings",
+            "Show all settings: what each means, its default, its unit and what it may be.",
+        ),
+    ),
 }
 """The commands under the headings of the help, in its order."""
 

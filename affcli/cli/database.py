@@ -8,14 +8,14 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from affcli import store
-from affcli.cli.options import DEFAULT_DATABASE
+from affcli import registry, store
+from affcli.cli.options import DEFAULT_DATABASE, DEFAULT_TOOL
 from affcli.cli.terminal import say
-from affcli.core.tool import TOOL_PARTS
+from affcli.core.records import LearningRunInfo
 from affcli.errors import UsageError, one_line
 
 if TYPE_CHECKING:
-    from affcli.store import LearningRunInfo, Store
+    from affcli.store import Store
 
 
 def opened(
@@ -34,21 +34,44 @@ def opened(
     return store.open_store(database, create=create, write=write)
 
 
-def learned_runs(records: "Store", tool: str | None, database: Path) -> "list[LearningRunInfo]":
-    """Return the latest finished learning run of the tool, or of every tool that has one.
+def learned_runs(
+    records: "Store", tool: str | None, database: Path, run: int | None = None
+) -> list[LearningRunInfo]:
+    """Return the learning runs whose tables are to be used.
+
+    Args:
+        records: open.
+        tool: the latest finished run of this tool; None for that of every tool that has one.
+        database: the file, for the message.
+        run: this run and no other.
 
     Raises:
         UsageError: there is none; the message names the command to run.
     """
-    names = [tool] if tool is not None else list(TOOL_PARTS)
-    runs = [run for run in map(records.latest_run, names) if run is not None]
+    if run is not None:
+        chosen = records.learning.run(run)
+        if chosen.status != "done":
+            raise UsageError(f"run {run} is not finished; go on with it first: --resume")
+        if tool not in (None, chosen.spec.tool):
+            raise UsageError(f"run {run} is of the {chosen.spec.tool}: leave out --tool")
+        return [chosen]
+    there = {one.spec.tool for one in records.learning.runs(status="done")}
+    known = dict.fromkeys([*registry.parts("tools"), *sorted(there)])
+    names = [tool] if tool is not None else [name for name in known if name in there]
+    runs = [found for found in map(records.learning.latest, names) if found is not None]
     if not runs:
-        only = " but by robots of a reproduction" if records.sessions("reproduce") else ""
+        wanted = "tools" if tool is None else registry.part("tools", tool).name
+        only = " but by robots of a reproduction" if records.sessions.all("reproduce") else ""
         learning = with_database(f"affcli learn --tool {tool or 't-hook'}", database)
         raise UsageError(
-            f"nothing learned with the {tool or 'tools'} in {database}{only}; first run: {learning}"
+            f"nothing learned with the {wanted} in {database}{only}; first run: {learning}"
         )
     return runs
+
+
+def tool_or_default(tool: str | None, run: int | None) -> str | None:
+    """Return the tool that a command is about when it takes one: the T-hook, unless a run is named."""
+    return tool if tool is not None or run is not None else DEFAULT_TOOL
 
 
 def with_database(command: str, database: Path) -> str:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from affcli import lab
+from affcli import lab, registry
 from affcli.cli.database import learned_runs, opened
 from affcli.cli.files import require_new, save
 from affcli.cli.options import (
@@ -29,14 +29,14 @@ from affcli.cli.options import (
 )
 from affcli.cli.terminal import say
 from affcli.config import load_settings
-from affcli.core.tool import ToolName, paper_tools
+from affcli.core.records import LearningRunInfo
 from affcli.errors import UsageError, one_line
 from affcli.lab.drawing import require_figures
 from affcli.report import figures
 from affcli.simulation.arm import reach_at
 
 if TYPE_CHECKING:
-    from affcli.store import LearningRunInfo, Store
+    from affcli.store import Store
 
 OneTool = Annotated[
     str | None,
@@ -101,7 +101,7 @@ def affordances(
             chosen = _chosen_run(store, run, tool, database)
             if compare is not None:
                 shown = lab.affordance_views.tables_compared(
-                    store, chosen, store.learning_run(compare)
+                    store, chosen, store.learning.run(compare)
                 )
             else:
                 shown = lab.affordance_views.table_of_run(store, chosen)
@@ -150,7 +150,7 @@ def workspace(
     _check_out(out, force=force)
     place = load_settings(config).workspace
     reach = reach_at(place.arm, place.arm.flange_height)
-    lying = paper_tools(place.tools)[ToolName(tool)]
+    lying = registry.tool(tool, place.tools)
     figure = figures.workspace.workspace_figure(place, lying, reach)
     words = f"the bare arm reaches from {reach.inner:.1f} to {reach.outer:.1f} in"
     _save(out, figures.canvas.encoded(figure, out.suffix), f"the table with the {tool}; {words}")
@@ -173,15 +173,15 @@ def tools(
     """
     _check_out(out, force=force)
     place = load_settings(config).workspace
-    known = paper_tools(place.tools)
-    whole, left = known[ToolName(tool)], known[ToolName(becomes)]
+    known = [registry.tool(name, place.tools) for name in registry.parts("tools")]
+    whole, left = (registry.tool(name, place.tools) for name in (tool, becomes))
     if left.parts_missing_in(whole) or not whole.parts_missing_in(left):
         raise UsageError(f"--becomes {becomes}: a {tool} does not become that by losing parts")
-    figure = figures.tools.tools_figure(list(known.values()), (whole, left), place.puck.radius)
+    figure = figures.tools.tools_figure(known, (whole, left), place.puck.radius)
     _save(
         out,
         figures.canvas.encoded(figure, out.suffix),
-        f"five tools, and a {tool} that became {becomes}",
+        f"{len(known)} tools, and a {tool} that became {becomes}",
     )
 
 
@@ -246,13 +246,13 @@ def _save(out: Path, data: bytes, title: str) -> None:
 
 def _chosen_run(
     store: "Store", run: int | None, tool: str | None, database: Path
-) -> "LearningRunInfo":
+) -> LearningRunInfo:
     """Return a learning run, finished or not, or the latest finished one of a tool."""
     if run is not None:
-        return store.learning_run(run)
+        return store.learning.run(run)
     name = tool or DEFAULT_TOOL
-    unfinished = store.learning_runs(tool=name, status="running")
-    if unfinished and store.latest_run(name) is None:
+    unfinished = store.learning.runs(tool=name, status="running")
+    if unfinished and store.learning.latest(name) is None:
         number = unfinished[-1].id
         raise UsageError(
             f"no finished run with the {name}; --run {number} draws what run {number} has so far"
@@ -262,14 +262,14 @@ def _chosen_run(
 
 def _runs_to_draw(
     store: "Store", ids: Sequence[int], tools: Sequence[str], database: Path
-) -> "list[LearningRunInfo]":
+) -> list[LearningRunInfo]:
     """Return learning runs, finished or not: those asked for, or all that stand for themselves."""
     if ids:
-        runs = [store.learning_run(one) for one in dict.fromkeys(ids)]
+        runs = [store.learning.run(one) for one in dict.fromkeys(ids)]
     else:
-        runs = [run for run in store.learning_runs() if not tools or run.spec.tool in tools]
+        runs = [run for run in store.learning.runs() if not tools or run.spec.tool in tools]
     if not runs:
-        reproduced = store.sessions("reproduce")
+        reproduced = store.sessions.all("reproduce")
         if reproduced:
             raise UsageError(
                 f"no learning runs but of robots: --session {reproduced[-1].id} draws these"

@@ -1,17 +1,17 @@
 """``affcli figure prediction``: how well a table predicts as it grows (§6.1)."""
 
 from affcli import lab
-from affcli.cli.database import learned_runs, opened
+from affcli.cli.database import learned_runs, opened, tool_or_default
 from affcli.cli.files import require_new, save
 from affcli.cli.options import (
     DEFAULT_DATABASE,
-    DEFAULT_TOOL,
     FIGURE_ENDINGS,
     Database,
     FigureOut,
     Force,
     LearnedTool,
     Pushes,
+    Run,
     Seed,
     TrialSensor,
 )
@@ -23,7 +23,8 @@ from affcli.report import figures
 def prediction(
     *,
     out: FigureOut,
-    tool: LearnedTool = DEFAULT_TOOL,
+    tool: LearnedTool = None,
+    run: Run = None,
     pushes: Pushes = 2000,
     seed: Seed = 0,
     sensor: TrialSensor = None,
@@ -38,13 +39,13 @@ def prediction(
     """
     require_new(out, force=force, endings=FIGURE_ENDINGS)
     with opened(database) as store:
-        (run,) = learned_runs(store, tool, database)
-        spec = lab.predicting.prediction_spec(run, tool, seed, sensor, pushes)
+        (used,) = learned_runs(store, tool_or_default(tool, run), database, run)
+        spec = lab.predicting.prediction_spec(used, used.spec.held, seed, sensor, pushes)
         done = []
-        with progress(f"pushing with the {tool}", pushes) as bar:
-            for push in lab.predicting.predict(store, run, spec):
+        with progress(f"pushing with the {spec.tool}", pushes) as bar:
+            for push in lab.predicting.predict(store, used, spec):
                 done.append(push)
                 bar.update(len(done), f"{len(done)} of {pushes} pushes")
-    title = f"Run {run.id}, {tool}"
+    title = f"Run {used.id}, {spec.tool}"
     save(out, figures.canvas.encoded(figures.prediction.prediction_figure(title, done), out.suffix))
     say(f"{title}: {one_line(out)}")

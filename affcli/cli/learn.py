@@ -9,31 +9,37 @@ from affcli.cli.database import opened
 from affcli.cli.options import (
     DEFAULT_DATABASE,
     AsJson,
+    Binding,
+    Changes,
     Config,
     Database,
+    Explorer,
+    Repertoire,
     Resume,
     Seed,
     Sensor,
     Tools,
+    World,
     check_count,
     check_if_given,
     checked_hours,
 )
 from affcli.cli.terminal import now, progress, say, show_either
 from affcli.config import load_settings, with_sensor
-from affcli.core.tool import TOOL_PARTS
-from affcli.core.trial import MOST_BEHAVIORS, LearningSpec
+from affcli.core.records import AlikeRun, LearningRunInfo
+from affcli.core.specs import MOST_BEHAVIORS, LearningSpec
 from affcli.errors import UsageError
 from affcli.report.learning import groups_json, groups_table, run_json, summary
+from affcli.simulation.tools.paper import TOOL_PARTS
 
 if TYPE_CHECKING:
-    from affcli.store import LearningRunInfo, Store
+    from affcli.store import Store
 
 
 def learn(
     *,
     tool: Tools = None,
-    all_tools: Annotated[bool, typer.Option("--all-tools", help="All five tools.")] = False,
+    all_tools: Annotated[bool, typer.Option("--all-tools", help="The paper's five tools.")] = False,
     hours: Annotated[
         float | None,
         typer.Option(
@@ -53,10 +59,15 @@ def learn(
         ),
     ] = None,
     seed: Seed = 0,
+    repertoire: Repertoire = None,
+    binding: Binding = None,
+    explorer: Explorer = None,
     sensor: Sensor = None,
+    world: World = None,
     resume: Resume = False,
     database: Database = DEFAULT_DATABASE,
     config: Config = None,
+    changes: Changes = None,
     as_json: AsJson = False,
 ) -> None:
     """Let a robot babble with a tool and fill its affordance table.
@@ -69,24 +80,28 @@ def learn(
     names = list(TOOL_PARTS) if all_tools else list(tool or ())
     if not names and not resume:
         raise UsageError(f"which tool? give --tool {'|'.join(TOOL_PARTS)}, or --all-tools")
-    if not names and (hours, behaviors, seed, sensor, config) != (None, None, 0, None, None):
+    own = (hours, behaviors, sensor, config, binding, explorer, world)
+    if not names and (seed, any(one is not None for one in own)) != (0, False):
         raise UsageError("--resume alone: an interrupted run has its own hours, seed and settings")
+    if not names and (changes or repertoire):
+        raise UsageError("--resume alone: an interrupted run has its own settings and behaviors")
     if hours is not None and behaviors is not None:
         raise UsageError("give --hours or --behaviors, not both")
     if behaviors is None and hours is None:
         hours = 1.0
 
-    settings = with_sensor(load_settings(config), sensor)
-    lab.sensing.require_sensor(settings)
-    text = settings.to_json()
-    specs = [LearningSpec(name, seed, 0, hours, behaviors, text) for name in names]
+    settings = with_sensor(load_settings(config, changes or ()), sensor)
+    parts = lab.run_parts.RunParts.chosen(
+        settings, repertoire=repertoire or (), binding=binding, explorer=explorer, world=world
+    )
+    specs = [parts.spec(name, seed, 0, hours, behaviors) for name in names]
     with opened(database, create=bool(names), write=True) as store:
         if not names:
-            specs = [run.spec for run in store.learning_runs(status="running")]
+            specs = [run.spec for run in store.learning.runs(status="running")]
             if not specs:
                 raise UsageError(f"nothing to resume in {database}; learn a tool: --tool t-hook")
         results = [_learn(store, spec) for spec in specs]
-        groups = [store.behavior_groups(learned.info.id) for learned in results]
+        groups = [store.results.behavior_groups(learned.info.id) for learned in results]
     found = list(zip(results, groups, strict=True))
     show_either(
         as_json=as_json,
@@ -100,10 +115,12 @@ def learn(
 
 def _learn(store: "Store", spec: LearningSpec) -> "lab.learning.Learned":
     """Run one learning run with progress on stderr; say what it gave."""
+    for alike in lab.learning.made_by_other_defaults(store, spec):
+        say(_in_words(alike))
     goal = 3600.0 * spec.hours if spec.hours is not None else float(spec.behaviors or 0)
     with progress(spec.tool, goal) as bar:
 
-        def update(info: "LearningRunInfo") -> None:
+        def update(info: LearningRunInfo) -> None:
             """Show the robot clock, behaviors, rows and resets."""
             done = info.robot_seconds if spec.hours is not None else info.behaviors
             bar.update(min(done, goal), summary(info))
@@ -113,3 +130,9 @@ def _learn(store: "Store", spec: LearningSpec) -> "lab.learning.Learned":
     verb = "learned" if learned.new else "already learned, nothing to do:"
     say(f"{verb} {spec.tool} (run {info.id}, seed {spec.seed}): {summary(info)}")
     return learned
+
+
+def _in_words(alike: AlikeRun) -> str:
+    """Say of a stored run by the same command what was otherwise then."""
+    words = ", ".join(f"{one.name} was {one.stored}, now {one.wanted}" for one in alike.changed)
+    return f"run {alike.run.id} is of the same command, but {words}: learning anew"

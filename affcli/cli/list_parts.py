@@ -5,8 +5,9 @@ from typing import Annotated
 import typer
 
 from affcli import registry
-from affcli.cli.options import AsJson, one_of
+from affcli.cli.options import AsJson
 from affcli.cli.terminal import show_either
+from affcli.core.names import one_of
 from affcli.report.parts import parts_json, parts_tables
 
 

@@ -4,19 +4,20 @@ An option's check runs when the command line is read, before the command: what a
 right. An option that only one command has stands in that command's file.
 """
 
-import difflib
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from affcli import registry
+from affcli.core.identity import Component
+from affcli.core.names import one_of
 from affcli.core.observation import SENSOR_KINDS, SensorKind
-from affcli.core.task import GOAL_NUMBERS, START_NUMBERS
-from affcli.core.tool import TOOL_PARTS
-from affcli.core.trial import LARGEST_SEED, LONGEST_HOURS
-from affcli.errors import BadInputError, UsageError, one_line
+from affcli.core.part import Kind
+from affcli.core.specs import LARGEST_SEED, LONGEST_HOURS
+from affcli.errors import BadInputError, one_line
 
 LARGEST_ID = LARGEST_SEED
 MOST_TRIES = 100_000
@@ -76,34 +77,19 @@ def checked_numbers(option: str, text: str, count: int) -> list[float]:
 
 
 def checked_tool(name: str) -> str:
-    """Return the name of a tool; UsageError with the nearest names when there is none such."""
-    return one_of("tool", name, list(TOOL_PARTS))
+    """Return the name of a registered tool; UsageError with the nearest names for another."""
+    return registry.part("tools", name).name
 
 
 def checked_tools(names: Iterable[str] | None) -> list[str]:
-    """Return tool names, each given by itself or several with commas, without repeats."""
+    """Return names of registered tools, each given by itself or several with commas, once each."""
     single = [part for name in names or () for part in name.split(",")]
-    return list(dict.fromkeys(checked_tool(name) for name in single))
+    return list(dict.fromkeys(map(checked_tool, single)))
 
 
-def checked_goal(goal: int) -> int:
-    """Return the number of a goal; UsageError when there is none such."""
-    return int(one_of("goal", str(goal), [str(n) for n in GOAL_NUMBERS]))
-
-
-def checked_starts(start: str) -> Sequence[int]:
-    """Return the starts asked for: one of 1 to 4, or all."""
-    if start == "all":
-        return START_NUMBERS
-    return (int(one_of("start", start, [*(str(n) for n in START_NUMBERS), "all"])),)
-
-
-def one_of(kind: str, value: str, known: Sequence[str]) -> str:
-    """Return `value` when it is known; else say which values are nearest."""
-    if value in known:
-        return value
-    near = difflib.get_close_matches(value[:40].lower(), known, n=3, cutoff=0.4) or known
-    raise UsageError(f"no {kind} {one_line(value, 60)!r}; did you mean {' or '.join(near)}?")
+def checked_part(kind: Kind) -> Callable[[str], Component]:
+    """Return a check for an option that takes a part: ``name:key=value,key=value``."""
+    return lambda text: registry.component(kind, text)
 
 
 def check_if_given(check: Callable[[Any], Any]) -> Callable[[Any], Any]:
@@ -135,6 +121,46 @@ Config = Annotated[
         "--config", help="A TOML file of settings that differ.", metavar="FILE", readable=False
     ),
 ]
+Changes = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set", help="One setting; several times for several.", metavar="SECTION.KEY=VALUE"
+    ),
+]
+PART = "NAME[:KEY=VALUE,...]"
+"""How an option takes a part; `affcli list` has their names."""
+Repertoire = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--repertoire",
+        help="Exploratory behaviors; several times for several (default: paper).",
+        metavar=PART,
+    ),
+]
+Binding = Annotated[
+    str | None,
+    typer.Option("--binding", help="How the tool is held (default: grasp).", metavar=PART),
+]
+Explorer = Annotated[
+    str | None,
+    typer.Option("--explorer", help="What to try next (default: random).", metavar=PART),
+]
+World = Annotated[str | None, typer.Option("--world", help="Where (default: table).", metavar=PART)]
+Planner = Annotated[
+    Component,
+    typer.Option(
+        "--planner",
+        help="How the robot chooses a row.",
+        metavar=PART,
+        parser=checked_part("planners"),
+    ),
+]
+DEFAULT_PLANNER = registry.DEFAULTS["planner"]
+TaskSet = Annotated[
+    str,
+    typer.Option("--task", help="The set of tasks (affcli list tasks).", metavar="NAME"),
+]
+DEFAULT_TASKS = registry.DEFAULTS["task"]
 Force = Annotated[bool, typer.Option("--force", help="Write over existing files.")]
 Resume = Annotated[
     bool,
@@ -168,16 +194,11 @@ Tools = Annotated[
     ),
 ]
 LearnedTool = Annotated[
-    str,
-    typer.Option("--tool", help="What was learned.", metavar="NAME", callback=checked_tool),
+    str | None,
+    typer.Option("--tool", help="What was learned (default: t-hook).", metavar="NAME"),
 ]
 DEFAULT_TOOL = "t-hook"
-Becomes = Annotated[
-    str,
-    typer.Option(
-        "--becomes", help="The shape that is left.", metavar="NAME", callback=checked_tool
-    ),
-]
+Becomes = Annotated[str, typer.Option("--becomes", help="The tool that is left.", metavar="NAME")]
 DEFAULT_BROKEN = "l-hook"
 HeldShape = Annotated[
     str | None,
@@ -185,7 +206,6 @@ HeldShape = Annotated[
         "--shape",
         help="What the robot truly holds, painted alike.",
         metavar="NAME",
-        callback=check_if_given(checked_tool),
     ),
 ]
 Pushes = Annotated[
@@ -196,7 +216,9 @@ Pushes = Annotated[
 ]
 Run = Annotated[
     int | None,
-    typer.Option("--run", help="A learning run's id.", metavar="ID", callback=check_count("--run")),
+    typer.Option(
+        "--run", help="The learning run of this id.", metavar="ID", callback=check_count("--run")
+    ),
 ]
 FigureOut = Annotated[
     Path, typer.Option("--out", help="The figure: *.png, *.svg or *.pdf.", metavar="FILE")

@@ -1,15 +1,15 @@
 """``affcli predict``: the table as a predictive model of pushes it has never seen (§6.1)."""
 
 from affcli import lab
-from affcli.cli.database import learned_runs, opened
+from affcli.cli.database import learned_runs, opened, tool_or_default
 from affcli.cli.options import (
     DEFAULT_DATABASE,
-    DEFAULT_TOOL,
     AsJson,
     Database,
     HeldShape,
     LearnedTool,
     Pushes,
+    Run,
     Seed,
     TrialSensor,
 )
@@ -20,7 +20,8 @@ from affcli.report.prediction import prediction_json, prediction_tables
 
 def predict(
     *,
-    tool: LearnedTool = DEFAULT_TOOL,
+    tool: LearnedTool = None,
+    run: Run = None,
     shape: HeldShape = None,
     pushes: Pushes = 500,
     seed: Seed = 0,
@@ -33,19 +34,20 @@ def predict(
     The nearest row of the same behavior tells: all of them, and only the first that were learned.
     Nothing is written.
     """
-    held = shape or tool
     with opened(database) as store:
-        (run,) = learned_runs(store, tool, database)
-        spec = lab.predicting.prediction_spec(run, held, seed, sensor, pushes)
+        (used,) = learned_runs(store, tool_or_default(tool, run), database, run)
+        held = lab.run_parts.tool_of(used.spec, shape or used.spec.tool)
+        spec = lab.predicting.prediction_spec(used, held, seed, sensor, pushes)
         done = []
-        with progress(f"pushing with the {held}", pushes) as bar:
-            for push in lab.predicting.predict(store, run, spec):
+        with progress(f"pushing with the {held.name}", pushes) as bar:
+            for push in lab.predicting.predict(store, used, spec):
                 done.append(push)
                 bar.update(len(done), f"{len(done)} of {pushes} pushes")
-    about = {"run": run.id, "tool": tool, "shape": held, "sensor": spec.sensor, "seed": seed}
+    about = {"run": used.id, "tool": spec.tool, "shape": spec.shape}
+    about |= {"sensor": spec.sensor, "seed": seed}
     about |= {"pushes": pushes, "radius": RADIUS}
     show_either(
         as_json=as_json,
         value=lambda: {**about, "scores": prediction_json(done)},
-        tables=lambda: prediction_tables(f"Run {run.id}, {tool}", RADIUS, done),
+        tables=lambda: prediction_tables(f"Run {used.id}, {spec.tool}", RADIUS, done),
     )

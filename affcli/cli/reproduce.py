@@ -9,18 +9,26 @@ from affcli import lab
 from affcli.cli.database import opened
 from affcli.cli.options import (
     DEFAULT_DATABASE,
+    DEFAULT_PLANNER,
     MOST_WORKERS,
     AsJson,
+    Binding,
+    Changes,
     Config,
     Database,
+    Explorer,
+    Planner,
+    Repertoire,
     Resume,
     Seed,
     Sensor,
+    World,
     check_count,
 )
 from affcli.cli.terminal import now, progress, say, show_either
-from affcli.config import load_settings, settings_from_json, with_sensor
-from affcli.core.trial import MOST_ROBOTS
+from affcli.config import load_settings, with_sensor
+from affcli.core.specs import MOST_ROBOTS
+from affcli.errors import UsageError
 from affcli.report.reproduction import reproduction_json, reproduction_tables
 
 FEW_ROBOTS = 20
@@ -38,7 +46,12 @@ def reproduce(
         ),
     ] = None,
     seed: Seed = 0,
+    repertoire: Repertoire = None,
+    binding: Binding = None,
+    explorer: Explorer = None,
+    planner: Planner = DEFAULT_PLANNER,  # type: ignore[assignment]  # parsed like any other
     sensor: Sensor = None,
+    world: World = None,
     resume: Resume = False,
     workers: Annotated[
         int | None,
@@ -51,6 +64,7 @@ def reproduce(
     ] = None,
     database: Database = DEFAULT_DATABASE,
     config: Config = None,
+    changes: Changes = None,
     as_json: AsJson = False,
 ) -> None:
     """Let many robots learn the five tools and do the paper's 80 + 16 trials; compare.
@@ -58,28 +72,35 @@ def reproduce(
     The result is the same for any number of workers. An interrupted reproduction goes on when the
     same command is given again, as does the latest one with --resume alone.
     """
-    own = (robots, seed, sensor, config) != (None, 0, None, None)
+    parts = (repertoire, binding, explorer, world)
+    own = (robots, seed, sensor, config, changes, *parts, str(planner)) != (
+        *(None, 0, None, None, None, None, None, None, None, DEFAULT_PLANNER),
+    )
     if robots is None:
         robots = FEW_ROBOTS
     if workers is None:
         workers = min(len(os.sched_getaffinity(0)), MOST_WORKERS) if _has_affinity() else 1
 
-    settings = with_sensor(load_settings(config), sensor)
-    lab.sensing.require_sensor(settings)
-    with opened(database, create=True, write=True) as store:
+    settings = with_sensor(load_settings(config, changes or ()), sensor)
+    chosen = lab.run_parts.RunParts.chosen(
+        settings, repertoire=repertoire or (), binding=binding, explorer=explorer, world=world
+    )
+    what = lab.reproduction.Reproduced(chosen, planner, seed)
+    with opened(database, create=own or not resume, write=True) as store:
         if resume and not own:
-            begun = [s for s in store.sessions("reproduce") if s.status == "running"]
-            if begun:
-                settings = settings_from_json(begun[-1].settings)
-                robots, seed = begun[-1].robots, begun[-1].seed
-                lab.sensing.require_sensor(settings)
-        events = lab.reproduction.reproduce(store, settings, robots, seed, workers, now)
+            begun = [s for s in store.sessions.all("reproduce") if s.status == "running"]
+            if not begun:
+                raise UsageError(
+                    f"nothing to resume in {database}; begin one: affcli reproduce --robots 20"
+                )
+            what, robots = lab.reproduction.reproduced_again(begun[-1].spec), begun[-1].spec.robots
+        events = lab.reproduction.reproduce(store, what, robots, workers, now)
         session = next(events)
         with progress("reproducing", robots) as bar:
             for saved in events:
                 bar.update(saved, f"{saved} of {robots} robots")
         result = lab.overview.reproduction_of(store, session, robots)
-    say(f"session {session}: {robots} robots, seed {seed}, saved in {database}")
+    say(f"session {session}: {robots} robots, seed {what.seed}, saved in {database}")
     show_either(
         as_json=as_json,
         value=lambda: reproduction_json(result),

@@ -6,7 +6,9 @@ import typer
 
 from affcli.cli.options import AsJson, Changes, Config
 from affcli.cli.terminal import say, show, show_json, show_text
+from affcli.config import DEFAULTS, known_settings, load_settings
 from affcli.errors import UsageError
+from affcli.report.settings import settings_json, settings_tables, settings_toml
 
 
 def settings(
@@ -22,9 +24,6 @@ def settings(
 
     With --config or --set only those that differ from the defaults.
     """
-    from affcli.config import DEFAULTS, known_settings, load_settings
-    from affcli.report.settings import settings_json, settings_tables, settings_toml
-
     if as_toml and as_json:
         raise UsageError("give --toml or --json, not both")
     chosen = config is not None or bool(changes)

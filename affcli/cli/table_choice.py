@@ -8,19 +8,18 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from affcli import lab
-from affcli import store as stored
-from affcli.behaviors.registry import paper_behaviors
 from affcli.cli.database import learned_runs
-from affcli.cli.options import check_count, check_if_given, checked_tool, one_of
+from affcli.cli.options import check_count
 from affcli.core.behavior import BehaviorCall
-from affcli.core.tool import TOOL_PARTS, ToolName
-from affcli.core.workspace import Workspace
+from affcli.core.names import one_of
+from affcli.core.records import LearningRunInfo
+from affcli.core.row_filter import Comparison, RowFilter
 from affcli.errors import BadInputError, UsageError, one_line
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from affcli.store import Comparison, LearningRunInfo, RowFilter, Store
+    from affcli.store import Store
 
 Tool = Annotated[
     str | None,
@@ -28,7 +27,6 @@ Tool = Annotated[
         "--tool",
         help="Rows of this tool alone.",
         metavar="NAME",
-        callback=check_if_given(checked_tool),
     ),
 ]
 Run = Annotated[
@@ -85,7 +83,8 @@ class Choice:
         tool: of this tool; of all if None.
         run: of this learning run; of the latest finished one of each tool if None.
         all_runs: of every learning run.
-        behavior: of this behavior, without parameters whatever they were; of all if None.
+        behavior: of the behavior of this name, with its parameters or without, whatever they were;
+            of all if None.
         probability: bounds of the replication probability.
         region: with the attractor nearest to this part of the tool; to any if None.
         limit: no more than so many; all if None.
@@ -94,20 +93,31 @@ class Choice:
     tool: str | None
     run: int | None
     all_runs: bool
-    behavior: BehaviorCall | None
+    behavior: str | None
     probability: "tuple[tuple[Comparison, float], ...]"
     region: str | None
     limit: int | None
 
     def filter_for(self, runs: "Sequence[LearningRunInfo]") -> "RowFilter":
-        """Return what the database can be asked for; it knows no regions."""
-        return stored.RowFilter(
+        """Return what the database can be asked for; it knows no regions.
+
+        Raises:
+            UsageError: none of the runs has the behavior; the message has the nearest.
+        """
+        return RowFilter(
             runs=None if self.all_runs else tuple(run.id for run in runs),
             tool=self.tool,
-            behavior=self.behavior,
+            behavior=None if self.behavior is None else _behavior(self.behavior, runs),
             probability=self.probability,
             limit=self.limit,
         )
+
+
+def _behavior(text: str, runs: "Sequence[LearningRunInfo]") -> BehaviorCall:
+    """Return the exploratory behavior of this name that learning runs have."""
+    calls = dict.fromkeys(one.call for run in runs for one in run.spec.repertoire)
+    known = {str(call): call for named in calls for call in (BehaviorCall(named.name, ()), named)}
+    return known[one_of("behavior", text, known)]
 
 
 def checked_choice(
@@ -123,7 +133,7 @@ def checked_choice(
     """Return what was asked for.
 
     Raises:
-        UsageError: an unknown behavior; a run beside --all-runs.
+        UsageError: a run beside --all-runs.
         BadInputError: a probability that cannot be read.
     """
     if run is not None and all_runs:
@@ -132,23 +142,11 @@ def checked_choice(
         tool=tool,
         run=run,
         all_runs=all_runs,
-        behavior=None if behavior is None else checked_behavior(behavior),
+        behavior=behavior,
         probability=() if probability is None else checked_probability(probability),
         region=region,
         limit=limit,
     )
-
-
-def checked_behavior(text: str) -> BehaviorCall:
-    """Return the exploratory behavior of this name; without parameters when none were given.
-
-    Raises:
-        UsageError: there is none such; the message has the nearest.
-    """
-    workspace = Workspace()
-    calls = paper_behaviors(workspace.arm, workspace.motion, workspace.tools).exploratory
-    known = {str(call): call for named in calls for call in (BehaviorCall(named.name, ()), named)}
-    return known[one_of("behavior", text, list(known))]
 
 
 def checked_probability(text: str) -> "tuple[tuple[Comparison, float], ...]":
@@ -180,7 +178,7 @@ def chosen_runs(store: "Store", choice: Choice, database: Path) -> "Sequence[Lea
     """
     runs = _runs(store, choice, database)
     tools = dict.fromkeys(run.spec.tool for run in runs)
-    parts = dict.fromkeys(part for tool in tools for part in TOOL_PARTS.get(ToolName(tool), ()))
+    parts = dict.fromkeys(part.name for run in runs for part in run.spec.held.parts)
     if choice.region is not None and choice.region not in parts:
         raise UsageError(
             f"no region {one_line(choice.region, 60)!r} of the {_listed(tools)}; the parts are "
@@ -192,7 +190,7 @@ def chosen_runs(store: "Store", choice: Choice, database: Path) -> "Sequence[Lea
 def _runs(store: "Store", choice: Choice, database: Path) -> "Sequence[LearningRunInfo]":
     """Return the run that was named, all runs, or the latest finished one of each tool."""
     if choice.run is not None:
-        run = store.learning_run(choice.run)
+        run = store.learning.run(choice.run)
         if choice.tool not in (None, run.spec.tool):
             raise UsageError(
                 f"run {run.id} is of the {one_line(run.spec.tool, 60)}, not of the {choice.tool}; "

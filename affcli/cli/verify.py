@@ -5,15 +5,15 @@ from typing import Annotated
 import typer
 
 from affcli import lab
-from affcli.cli.database import learned_runs, opened
+from affcli.cli.database import learned_runs, opened, tool_or_default
 from affcli.cli.options import (
     DEFAULT_DATABASE,
-    DEFAULT_TOOL,
     MOST_TRIES,
     AsJson,
     Database,
     HeldShape,
     LearnedTool,
+    Run,
     Seed,
     TrialSensor,
     check_count,
@@ -24,7 +24,8 @@ from affcli.report.verification import Verification, verification_json, verifica
 
 def verify(
     *,
-    tool: LearnedTool = DEFAULT_TOOL,
+    tool: LearnedTool = None,
+    run: Run = None,
     shape: HeldShape = None,
     rows: Annotated[
         int | None,
@@ -51,18 +52,18 @@ def verify(
     Rows of the latest learning run are executed again, in random order, each in a fresh situation
     that matches its start. Nothing is written unless told to --update.
     """
-    held = shape or tool
     with opened(database, write=update) as store:
-        (run,) = learned_runs(store, tool, database)
+        (used,) = learned_runs(store, tool_or_default(tool, run), database, run)
+        held = lab.run_parts.tool_of(used.spec, shape or used.spec.tool)
         spec = lab.verifying.verification_spec(
-            run, held, seed, sensor, rows, until_verdict=until_verdict
+            used, held, seed, sensor, rows, until_verdict=until_verdict
         )
         tries = []
-        with progress(f"{tool}, row by row", spec.tries) as bar:
-            for one in lab.verifying.verify(store, run, spec, now, update=update):
+        with progress(f"{used.spec.tool}, row by row", spec.tries) as bar:
+            for one in lab.verifying.verify(store, used, spec, now, update=update):
                 tries.append(one)
                 bar.update(len(tries), f"{len(tries)} of {spec.tries} tries")
-    found = Verification(run.id, spec, run.rows, update, tuple(tries))
+    found = Verification(used.id, spec, used.rows, update, tuple(tries))
     show_either(
         as_json=as_json,
         value=lambda: verification_json(found),

@@ -10,7 +10,6 @@ from affcli.lazy import lazy_modules
 if TYPE_CHECKING:
     from affcli.lab import adaptation as adaptation
     from affcli.lab import affordance_views as affordance_views
-    from affcli.lab import bench as bench
     from affcli.lab import breaking as breaking
     from affcli.lab import film_strips as film_strips
     from affcli.lab import filming as filming
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from affcli.lab import replaying as replaying
     from affcli.lab import reproduction as reproduction
     from affcli.lab import results as results
-    from affcli.lab import sensing as sensing
+    from affcli.lab import run_parts as run_parts
     from affcli.lab import solving as solving
     from affcli.lab import table as table
     from affcli.lab import verifying as verifying

@@ -3,7 +3,8 @@
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from affcli.core.records import LearningRunInfo
+from affcli.config import first_defaults, known_settings
+from affcli.core.records import AlikeRun, ChangedPart, LearningRunInfo
 from affcli.core.specs import LearningSpec, LearningStep
 from affcli.store import Store
 
@@ -87,3 +88,35 @@ def _chunks(steps: Iterator[LearningStep]) -> Iterator[Sequence[LearningStep]]:
             chunk = []
     if chunk:
         yield chunk
+
+
+def made_by_other_defaults(store: Store, spec: LearningSpec) -> tuple[AlikeRun, ...]:
+    """Return the stored runs of the same command that were made by other defaults or another world.
+
+    Args:
+        store: open.
+        spec: a new run; none are returned for one that the store has.
+
+    Returns:
+        Each with what was otherwise: settings that the command leaves at their default, with their
+        values then and now; the world's version.
+    """
+    if store.learning.find(spec) is not None:
+        return ()
+    usual = {name: one.default for name, one in known_settings().items()}
+    found = []
+    for alike in store.learning.find_alike(spec):
+        changed = tuple(_with_values(one) for one in alike.changed)
+        if all(one.name == "world" or one.wanted == usual.get(one.name) for one in changed):
+            found.append(AlikeRun(alike.run, changed))
+    return tuple(found)
+
+
+def _with_values(part: ChangedPart) -> ChangedPart:
+    """Return what differs with the first default where none is named."""
+    first = first_defaults().get(part.name)
+    return ChangedPart(
+        part.name,
+        first if part.stored is None else part.stored,
+        first if part.wanted is None else part.wanted,
+    )

@@ -14,6 +14,7 @@ from multiprocessing import active_children, get_context, parent_process
 from threading import Thread
 
 from affcli import registry
+from affcli.config import with_sensor
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.identity import Component
 from affcli.core.specs import (
@@ -27,7 +28,7 @@ from affcli.core.specs import (
 )
 from affcli.errors import AffcliError
 from affcli.lab.learning_run import LearningRun
-from affcli.lab.run_parts import RunParts, settings_json, world_of
+from affcli.lab.run_parts import RunParts, settings_json, settings_of_text, world_of
 from affcli.lab.trials import trial_specs, whole_trial
 from affcli.lab.versions import versions
 from affcli.simulation.tools.paper import TOOL_PARTS
@@ -69,6 +70,19 @@ class Reproduced:
             settings=settings_json(parts.settings),
             task_set=registry.DEFAULTS["task"],
         )
+
+
+def reproduced_again(session: SessionSpec) -> Reproduced:
+    """Return what a stored reproduction was of, to go on with it."""
+    parts = RunParts(
+        with_sensor(settings_of_text(session.settings), session.sensor),
+        session.world,
+        session.repertoire,
+        session.binding,
+        session.explorer,
+        session.sensor,
+    )
+    return Reproduced(parts, session.planner, session.seed)
 
 
 def one_robot(what: Reproduced, robot: int) -> RobotRecord:

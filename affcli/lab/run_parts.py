@@ -12,6 +12,7 @@ from affcli.core.identity import Component, canonical_json
 from affcli.core.observation import SensorKind
 from affcli.core.ports import World
 from affcli.core.specs import LearningSpec
+from affcli.core.task import Task
 from affcli.core.tool import Tool
 from affcli.errors import BadInputError, DatabaseError
 
@@ -97,14 +98,14 @@ def settings_json(settings: Settings) -> str:
 
 def settings_of(learned: LearningSpec, sensor: SensorKind | None = None) -> Settings:
     """Return the settings of a learning run, seen through its own sensor or another."""
-    return with_sensor(_settings(learned.settings), sensor or learned.sensor)
+    return with_sensor(settings_of_text(learned.settings), sensor or learned.sensor)
 
 
 def tool_of(learned: LearningSpec, name: str) -> Tool:
     """Return a tool by name: the one that was learned, else a registered one in the run's sizes."""
     if name == learned.tool:
         return learned.held
-    return registry.tool(name, _settings(learned.settings).workspace.tools)
+    return registry.tool(name, settings_of_text(learned.settings).workspace.tools)
 
 
 def world_of(learned: LearningSpec, *, again: bool = False) -> World:
@@ -132,6 +133,11 @@ def world_of(learned: LearningSpec, *, again: bool = False) -> World:
     return registry.world(chosen, settings)
 
 
+def tasks_of(world: World, task_set: str) -> tuple[Task, ...]:
+    """Return the tasks of a set; UsageError when there is no set of this name."""
+    return world.tasks(registry.part("tasks", task_set).name)
+
+
 def require_world_version(made: Component) -> None:
     """Refuse to do again what was made in another version of the world.
 
@@ -147,7 +153,7 @@ def require_world_version(made: Component) -> None:
 
 
 @lru_cache(maxsize=16)
-def _settings(text: str) -> Settings:
+def settings_of_text(text: str) -> Settings:
     """Return the settings that a spec keeps."""
     try:
         differing = json.loads(text)

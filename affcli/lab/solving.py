@@ -4,15 +4,42 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from affcli.core.identity import Component
+from affcli.core.names import one_of
 from affcli.core.observation import SensorKind
+from affcli.core.ports import World
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import Counters, Protocol, SessionSpec, TrialSpec
 from affcli.core.task import Task
 from affcli.core.trial import Outcome, StepRecord, TrialEnd
-from affcli.lab.run_parts import world_of
+from affcli.lab.run_parts import tasks_of, world_of
 from affcli.lab.trials import WithEnd, run_trial, trial_specs
 from affcli.lab.versions import versions
 from affcli.store import Store
+
+
+@dataclass(frozen=True, slots=True)
+class WantedTasks:
+    """Which tasks are to be done.
+
+    Args:
+        task_set: of this set.
+        goal: those with the goal of this name.
+        start: those from the start of this name; from all for None.
+    """
+
+    task_set: str
+    goal: str
+    start: str | None = None
+
+    def among(self, world: World) -> list[Task]:
+        """Return the tasks of a world that are meant; UsageError when there are none."""
+        known = tasks_of(world, self.task_set)
+        goal = one_of("goal", self.goal, dict.fromkeys(task.goal.name for task in known))
+        tasks = [task for task in known if task.goal.name == goal]
+        if self.start is None:
+            return tasks
+        start = one_of("start", self.start, [task.start_name for task in tasks])
+        return [task for task in tasks if task.start_name == start]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +80,7 @@ class SolvedTrial:
 def solve(
     store: Store,
     runs: Sequence[LearningRunInfo],
-    tasks: Sequence[Task],
+    wanted: WantedTasks,
     seed: int,
     now: Callable[[], str],
     planner: Component,
@@ -68,8 +95,7 @@ def solve(
     Args:
         store: open for writing.
         runs: the learning runs whose tables are used, one for each tool.
-        tasks: by the goals and starts of the first run's settings; another run has its own places
-            of the same names.
+        wanted: which tasks.
         seed: of the sensor's noise.
         now: gives the time as ISO text.
         planner: how the robots choose rows.
@@ -77,18 +103,15 @@ def solve(
 
     Yields:
         Each step once it is saved, and each trial's end.
+
+    Raises:
+        UsageError: there are no such tasks.
     """
-    names = {(task.goal.name, task.start_name) for task in tasks}
     planned = []
     for run in runs:
         world, kind = world_of(run.spec), sensor or run.spec.sensor
-        own = [
-            task
-            for task in world.tasks(tasks[0].task_set)
-            if (task.goal.name, task.start_name) in names
-        ]
         specs = trial_specs(
-            *(Protocol.EXTENSION_OF_REACH, run.spec, run.spec.held, own),
+            *(Protocol.EXTENSION_OF_REACH, run.spec, run.spec.held, wanted.among(world)),
             *(seed, kind, planner, world),
         )
         # A camera that is not there, or cannot be calibrated, is found before anything is recorded.

@@ -60,7 +60,7 @@ def view_of_pattern(settings: Settings, seed: int) -> View:
     from affcli.perception.palette import MARKER_COLOR, ColorClass, Role
     from affcli.perception.segmentation import Segmenter
 
-    eye = _eye(settings, seed)
+    eye = eye_at(settings, seed)
     pattern = table_pattern(settings.camera, settings.workspace)
     rng = np.random.Generator(np.random.PCG64((VIEW, seed)))
     markers = ColorClass("", MARKER_COLOR, Role.OBJECT)
@@ -80,7 +80,7 @@ def view_of_table(settings: Settings, seed: int) -> View:
         registry.tool(SHOWN, workspace.tools),
         goal_regions(workspace.layout)["4"],
     )
-    seen = _seen(scene, _eye(settings, seed), VIEW, seed)
+    seen = _seen(scene, eye_at(settings, seed), VIEW, seed)
     return View(f"The beginning of a trial with the {SHOWN}", seen)
 
 
@@ -161,7 +161,7 @@ def _scene(step: StepScene) -> Scene:
     )
 
 
-def _eye(settings: Settings, seed: int) -> "Eye":
+def eye_at(settings: Settings, seed: int) -> "Eye":
     """Return a camera of these settings, and of robot 0, which may see the tool that is shown."""
     tool = registry.tool(SHOWN, settings.workspace.tools)
     return eye_of(settings.camera, settings.workspace, tool, seed, 0)
