@@ -4,10 +4,10 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from affcli.core.identity import shown
-from affcli.core.part import Part
+from affcli.core.part import Kind, Part
 from affcli.report.sheet import Sheet
 
-Registered = Mapping[str, Mapping[str, Part]]
+Registered = Mapping[Kind, Mapping[str, Part]]
 """Parts by name, by kind."""
 
 
