@@ -126,17 +126,17 @@ def world(chosen: Component, settings: "Settings") -> "World":
 
 
 def _built(kind: Kind, chosen: Component) -> Callable[..., Any]:
-    """Return what builds a part, its parameters given.
+    """Return what builds the part that a component names, its parameters given.
 
     Raises:
-        UsageError: this affcli has no such part.
-        BadInputError: it has another version of it.
+        BadInputError: this affcli has no such part, or has it in another version.
     """
-    found = part(kind, chosen.name)
-    if found.version != chosen.version:
+    found = parts(kind).get(chosen.name)
+    if found is None or found.version != chosen.version:
+        has = "no such part" if found is None else f"version {found.version} of it"
         raise BadInputError(
-            f"{chosen}: this affcli has version {found.version} of {found.name}; install the "
-            "affcli that made the record"
+            f"{kind.removesuffix('s')} {one_line(chosen, 80)}: this affcli has {has}; install what "
+            "made the record"
         )
     values = found.values(chosen)
 

@@ -2,8 +2,8 @@
 
 from functools import partial
 
-from affcli.behaviors.motor_schemas import move_straight
 from affcli.core.behavior import BehaviorCall, BehaviorName, ExploratoryBehavior, Repertoire
+from affcli.core.motion import Slide
 from affcli.core.part import Part
 from affcli.core.setting import Setting
 
@@ -29,7 +29,7 @@ def moving(name: BehaviorName, offset_distance: float) -> Repertoire:
     """Return one behavior: the arm moves by `offset_distance` (in) in the behavior's direction."""
     x, y = DIRECTIONS[name]
     call = BehaviorCall.of(name, {"offset_distance": offset_distance})
-    motion = move_straight(x * offset_distance, y * offset_distance)
+    motion = (Slide(x * offset_distance, y * offset_distance),)
     return (ExploratoryBehavior(call, motion),)
 
 

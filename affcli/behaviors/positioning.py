@@ -2,10 +2,8 @@
 
 import math
 
-from affcli.behaviors.motor_schemas import move_lifted
 from affcli.core.behavior import POSITION_WRIST, BehaviorCall
 from affcli.core.geometry import Point, Pose
-from affcli.core.motion import Motion
 from affcli.core.observation import Observation
 
 
@@ -22,9 +20,12 @@ def position_wrist(offset: Point, wrist_angle: float = 0.0) -> BehaviorCall:
     return BehaviorCall.of(POSITION_WRIST, params)
 
 
-def positioning_motion(call: BehaviorCall, seen: Observation | None) -> Motion:
-    """Move such that the attractor's centroid is at offset (x, y) relative to the wrist (§5)."""
+def wrist_target(call: BehaviorCall, seen: Observation | None) -> Pose:
+    """Return where the wrist goes: such that the attractor's centroid is at offset (x, y) from it
+    (§5) (in, rad, table frame).
+    """
     if seen is None:
         raise ValueError("position wrist aims by an observation; observe first")
-    target = seen.wrist_for(Point(call["x"], call["y"]))
-    return move_lifted(Pose(target.x, target.y, math.radians(call.get("angle", 0.0))))
+    params = dict(call.params)
+    angle = math.radians(params["angle"]) if "angle" in params else 0.0
+    return Pose(seen.object_x - params["x"], seen.object_y - params["y"], angle)

@@ -34,9 +34,9 @@ class RandomBabbling:
     def places(self, seen: Observation) -> NDArray[np.float64]:
         """Return uniform draws from the box."""
         box, drawn = self.box, self.rng.random((self.box.draws, 2))
-        x = (2.0 * drawn[:, 0] - 1.0) * box.offset_x_max
-        y = box.offset_y_min + drawn[:, 1] * (box.offset_y_max - box.offset_y_min)
-        return np.column_stack((x, y))
+        drawn[:, 0] = (2.0 * drawn[:, 0] - 1.0) * box.offset_x_max
+        drawn[:, 1] = box.offset_y_min + drawn[:, 1] * (box.offset_y_max - box.offset_y_min)
+        return drawn
 
     def refused(self, place: Point) -> None:
         """Draw on."""

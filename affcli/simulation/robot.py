@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from affcli.behaviors.grasping import hold_of
-from affcli.behaviors.positioning import positioning_motion
+from affcli.behaviors.positioning import wrist_target
 from affcli.core.behavior import (
     GRASP,
     POSITION_WRIST,
@@ -17,7 +17,7 @@ from affcli.core.behavior import (
     Repertoire,
 )
 from affcli.core.geometry import Point, Pose
-from affcli.core.motion import Carry, Motion, Slide, Wait
+from affcli.core.motion import Motion, Slide, Wait
 from affcli.core.observation import Observation
 from affcli.core.ports import Film
 from affcli.simulation.arm import reach_at
@@ -46,8 +46,8 @@ class SimulatedRobot:
 
     def __init__(self, table: Table, repertoire: Repertoire) -> None:
         self._table = table
-        self._motions = {one.call: one.motion for one in repertoire}
-        arm = table.workspace.arm
+        arm, still = table.workspace.arm, Wait(table.workspace.motion.hold)
+        self._motions = {one.call: (*one.motion, still) for one in repertoire}
         self._low = reach_at(arm, arm.flange_height)
         self._high = reach_at(arm, arm.flange_height + arm.lift_height)
         self.clock = 0.0
@@ -87,34 +87,33 @@ class SimulatedRobot:
         """Execute one behavior to its end (see the protocol in `core.ports`)."""
         start, began = self._table.wrist, self.clock
         self.attractor_before = self._table.attractor
-        status = self._run(self._motion(call, seen))
+        if call.name == POSITION_WRIST:
+            status = self._carry(wrist_target(call, seen))
+        else:
+            status = self._run(self._take(call) if call.name == GRASP else self._motions[call])
         return Execution(call, status, start, self._table.wrist, self.clock - began)
 
-    def _motion(self, call: BehaviorCall, seen: Observation | None) -> Motion:
-        """Return the motion of a behavior; a grasp takes the tool meanwhile."""
-        if call.name == POSITION_WRIST:
-            return positioning_motion(call, seen)
-        timing = self._table.workspace.motion
-        if call.name == GRASP:
-            first = self.holding is None
-            self._table.take(hold_of(call))
-            self.holding = call
-            return (Wait(timing.grasp_time if first else timing.regrasp_time),)
-        return (*self._motions[call], Wait(timing.hold))
+    def _take(self, call: BehaviorCall) -> Motion:
+        """Take the tool as a grasp says; return the motion, which is a wait."""
+        timing, first = self._table.workspace.motion, self.holding is None
+        self._table.take(hold_of(call))
+        self.holding = call
+        return (Wait(timing.grasp_time if first else timing.regrasp_time),)
 
     def _run(self, motion: Motion) -> ExecutionStatus:
         """Execute the segments of a motion until one of them does not end as asked."""
         status = ExecutionStatus.DONE
         for segment in motion:
-            match segment:
-                case Slide(dx, dy) if status is ExecutionStatus.DONE:
-                    status = self._slide(dx, dy)
-                case Carry(to) if status is ExecutionStatus.DONE:
-                    status = self._carry(to)
-                case Wait(seconds):
-                    self.clock += seconds
-                    if self.film is not None:
-                        self.film(self.clock, self._table.scene)
+            if isinstance(segment, Wait):
+                self.clock += segment.seconds
+                if self.film is not None:
+                    self.film(self.clock, self._table.scene)
+            elif status is not ExecutionStatus.DONE:
+                continue
+            elif isinstance(segment, Slide):
+                status = self._slide(segment.dx, segment.dy)
+            else:
+                status = self._carry(segment.to)
         return status
 
     def _carry(self, to: Pose) -> ExecutionStatus:
