@@ -6,6 +6,7 @@ from itertools import chain
 from affcli.config import settings_from_json
 from affcli.core.behavior import BehaviorCall
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
+from affcli.core.geometry import Pose
 from affcli.core.task import goal_regions, start_positions
 from affcli.core.tool import ToolName, paper_tools
 from affcli.core.trial import TrialSpec
@@ -35,7 +36,7 @@ def film_of(store: Store, trial_id: int, wanted: tuple[int, int] | None = None) 
     if wanted is not None:
         _require_steps(trial_id, wanted, len(steps))
     settings, spec = settings_from_json(info.settings), info.spec
-    layout, table = settings.workspace.layout, settings.workspace.table
+    layout = settings.workspace.layout
     _require_known(trial_id, spec, steps)
     tools = paper_tools(settings.workspace.tools)
     believed, held = tools[ToolName(spec.tool)], tools[ToolName(spec.shape)]
@@ -45,10 +46,10 @@ def film_of(store: Store, trial_id: int, wanted: tuple[int, int] | None = None) 
         parts=held.parts,
         missing=believed.parts_missing_in(held),
         goal=goal_regions(layout)[spec.goal],
-        wrist=settings.workspace.wrist_start,
+        wrist=Pose(*settings.workspace.wrist_start, 0.0),
         puck=start_positions(layout)[spec.start],
         puck_radius=settings.workspace.puck.radius,
-        table=(-table.half_width, table.near, table.half_width, table.far),
+        table=settings.workspace.table,
         steps=steps,
     )
 
@@ -59,8 +60,8 @@ def _filmed(step: StoredStep) -> FilmedStep:
         number=step.number,
         behavior=_plain(step.row.exploratory),
         row=step.affordance_id,
-        wrist_start=step.wrist_start,
-        wrist_end=step.wrist_end,
+        wrist_start=Pose(*step.wrist_start, 0.0),
+        wrist_end=Pose(*step.wrist_end, 0.0),
         puck_start=step.true_start,
         puck_end=step.true_end,
         expected=step.expected,
