@@ -1,13 +1,12 @@
 """``affcli figure trial``, ``results`` and ``adaptation``: figures of testing trials (§7)."""
 
-import re
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from affcli.cli.files import require_new, save
-from affcli.cli.options import DEFAULT_DATABASE, Database, Force, checked_count
+from affcli.cli.options import DEFAULT_DATABASE, Database, Force, checked_count, checked_range
 from affcli.cli.terminal import say
 from affcli.errors import BadInputError, one_line
 from affcli.report.film import MOST_NAMED
@@ -38,7 +37,11 @@ def trial(
     counters afterwards (successes/uses). Of a trial of many steps some are chosen.
     """
     checked_count("trial", number, LARGEST_ID)
-    wanted = None if steps is None else checked_steps(steps)
+    wanted = None if steps is None else checked_range("--steps", steps)
+    if wanted is not None and wanted[1] - wanted[0] >= MOST_NAMED:
+        raise BadInputError(
+            f"--steps {steps}: at most {MOST_NAMED} steps fit a page; ask for fewer"
+        )
     require_new(out, force=force, endings=ENDINGS)
 
     from affcli.lab.drawing import require_figures
@@ -130,14 +133,3 @@ def checked_session(session: int | None) -> None:
     """Refuse a number that no session has."""
     if session is not None:
         checked_count("--session", session, LARGEST_ID)
-
-
-def checked_steps(text: str) -> tuple[int, int]:
-    """Return the first and last step asked for; BadInputError when they are none."""
-    found = re.fullmatch(r"([0-9]{1,18})(?:-([0-9]{1,18}))?", text)
-    first, last = (int(found[1]), int(found[2] or found[1])) if found else (0, 0)
-    if not 1 <= first <= last:
-        raise BadInputError(f"--steps {one_line(text, 40)}: give two steps, as in --steps 3-8")
-    if last - first >= MOST_NAMED:
-        raise BadInputError(f"--steps {text}: at most {MOST_NAMED} steps fit a page; ask for fewer")
-    return first, last

@@ -1,7 +1,7 @@
 """``affcli replay``: do a stored trial or learning run again and watch (§6, §7)."""
 
-import re
-from collections.abc import Iterator, Sequence
+from collections import deque
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -16,10 +16,10 @@ from affcli.cli.options import (
     Database,
     Force,
     checked_count,
+    checked_range,
 )
 from affcli.cli.terminal import (
     asked,
-    columns,
     interactive,
     on_terminal,
     play,
@@ -32,9 +32,8 @@ from affcli.cli.terminal import (
 from affcli.errors import BadInputError, UsageError, one_line
 
 if TYPE_CHECKING:
-    from affcli.core.replay import Difference, Replay, ReplayedBehavior
-    from affcli.core.workspace import Workspace
-    from affcli.report.replaying import Page, Screen
+    from affcli.core.replay import Replay, ReplayedBehavior
+    from affcli.report.replaying import Frame
     from affcli.store import Store
 
 STEPWISE = 4.0
@@ -78,7 +77,7 @@ def replay(
     On a terminal each step waits for Enter; --speed plays without waiting.
     """
     _check_what(trial, run, every=every, shown=(steps, speed), gif=gif, as_json=as_json)
-    wanted = _range(steps)
+    wanted = None if steps is None else checked_range("--steps", steps)
     if gif is not None:
         from affcli.lab.drawing import require_figures
 
@@ -121,17 +120,6 @@ def _check_what(
         raise UsageError("--json plays nothing: leave out --speed")
 
 
-def _range(text: str | None) -> tuple[int, int] | None:
-    """Return the first and the last number of ``3-5``."""
-    if text is None:
-        return None
-    found = re.fullmatch(r"([0-9]{1,9})(?:-([0-9]{1,9}))?", text)
-    first, last = (int(found[1]), int(found[2] or found[1])) if found else (0, 0)
-    if not 1 <= first <= last:
-        raise BadInputError(f"--steps {one_line(text, 40)}: must be a number or two, as in 3-5")
-    return first, last
-
-
 def _replay_trial(
     store: "Store",
     trial: int,
@@ -143,7 +131,7 @@ def _replay_trial(
 ) -> int:
     """Do one trial again; show it, film it, or give it as JSON."""
     from affcli.lab.replaying import replay_trial
-    from affcli.report.replaying import closing_words, replay_json
+    from affcli.report.replaying import closing_words, opening_frame, replay_json, trial_frames
 
     again = replay_trial(store, trial)
     first, last = wanted or (1, len(again.steps))
@@ -154,8 +142,12 @@ def _replay_trial(
         _film(again, numbers, speed or 1.0, gif)
     if as_json:
         show_json(replay_json(again, numbers))
+    elif gif is None and numbers:
+        braille = shows_braille()
+        steps = (trial_frames(again, number, braille=braille) for number in numbers)
+        _show(steps, len(numbers), speed)
     elif gif is None:
-        _show_steps(again, numbers, speed)
+        show(opening_frame(again, braille=shows_braille()))
     say(closing_words(again))
     return 1 if again.differences else 0
 
@@ -178,78 +170,19 @@ def _film(replay: "Replay", numbers: Sequence[int], speed: float, gif: Path) -> 
     say(f"trial {replay.trial_id}, {which}: {one_line(gif)}")
 
 
-def _screen(workspace: "Workspace") -> "Screen":
-    """Return what draws pages for this terminal."""
-    from affcli.report.replaying import Screen
-
-    return Screen(workspace, columns(), braille=shows_braille())
-
-
-def _show_steps(replay: "Replay", numbers: Sequence[int], speed: float | None) -> None:
-    """Show steps: played, one at a time, or, where nobody answers, each as it ends."""
+def _show(parts: "Iterable[Iterator[Frame]]", count: int, speed: float | None) -> None:
+    """Show steps or behaviors: played, one at a time, or, where nobody answers, each as it ends."""
     from affcli.lab.filming import FRAME_RATE
-    from affcli.report.replaying import opening_page, trial_pages
 
-    screen = _screen(replay.workspace)
-    if not numbers:
-        show(opening_page(replay, screen))
-    elif speed is not None and on_terminal():
-        pages = (page for number in numbers for page in trial_pages(replay, number, screen))
-        play(pages, FRAME_RATE * speed)
+    if speed is not None and on_terminal():
+        play(chain.from_iterable(parts), FRAME_RATE * speed)
     elif interactive():
-        number: int | None = numbers[0]
-        while number is not None:
-            play(trial_pages(replay, number, screen), FRAME_RATE * STEPWISE)
-            number = _next(number, numbers)
+        for number, frames in enumerate(parts, 1):
+            play(frames, FRAME_RATE * STEPWISE)
+            if number < count and asked("Enter: the next; q: leave > ") != "":
+                return
     else:
-        show(*(_last(trial_pages(replay, number, screen)) for number in numbers))
-
-
-def _last(pages: "Iterator[Page]") -> "Page":
-    """Return the last page."""
-    *_, last = pages
-    return last
-
-
-def _next(number: int, numbers: Sequence[int]) -> int | None:
-    """Ask which step comes next; None for none."""
-    if len(numbers) == 1:
-        return None
-    following = number + 1 if number + 1 in numbers else None
-    enter = "the end" if following is None else f"step {following}"
-    while True:
-        answer = asked(f"Enter: {enter}; {numbers[0]}-{numbers[-1]}: that; q: leave > ")
-        if answer is None or answer.lower() in {"q", "quit"}:
-            return None
-        if not answer:
-            return following
-        if re.fullmatch("[0-9]{1,9}", answer) and int(answer) in numbers:
-            return int(answer)
-
-
-class _Noted:
-    """Behaviors done again, and what differs in them.
-
-    Args:
-        behaviors: as they are done.
-        last: the number of the last one that should be.
-    """
-
-    def __init__(self, behaviors: "Iterator[ReplayedBehavior]", last: int) -> None:
-        self._behaviors, self._last = behaviors, last
-        self.done = 0
-        self.differences: list[Difference] = []
-
-    def __iter__(self) -> "Iterator[ReplayedBehavior]":
-        from affcli.core.replay import Difference
-
-        for behavior in self._behaviors:
-            self.done = behavior.record.step
-            self.differences += behavior.differences
-            yield behavior
-        if self.done < self._last:
-            missing = self.done + 1
-            self.differences.append(Difference(missing, "number", missing, None))
+        show(*(deque(frames, maxlen=1)[0] for frames in parts))
 
 
 def _replay_run(
@@ -262,45 +195,42 @@ def _replay_run(
 ) -> int:
     """Do a learning run again; show its behaviors on a terminal, or those that were asked for."""
     from affcli.config import settings_from_json
+    from affcli.core.replay import Difference
     from affcli.lab.replaying import replay_run
-    from affcli.report.replaying import behavior_pages, differences_json, verdict
+    from affcli.report.replaying import behavior_frames, differences_json, verdict
 
     info = store.learning_run(run)
     first, last = wanted or (1, info.behaviors)
     if last > info.behaviors:
         raise UsageError(f"no behavior {last} in run {run}; it has {info.behaviors or 'none'}")
-    noted = _Noted(replay_run(store, info, first, last), last)
+    done, differences = 0, list[Difference]()
+
+    def noted() -> "Iterator[ReplayedBehavior]":
+        """Yield the behaviors that were asked for; keep how many were done and what differs."""
+        nonlocal done
+        for behavior in replay_run(store, info, first, last):
+            done = behavior.record.step
+            differences.extend(behavior.differences)
+            if done >= first:
+                yield behavior
+        if done < last:
+            differences.append(Difference(done + 1, "number", done + 1, None))
+
     watched = wanted is not None or interactive() or (speed is not None and on_terminal())
     if watched and not as_json and last:
-        screen = _screen(settings_from_json(info.spec.settings).workspace)
+        place = settings_from_json(info.spec.settings).workspace
         name = f"Run {run}, {info.spec.tool}, {info.behaviors} behaviors"
-        # Those before the first are only there when they differ from their record.
-        seen = (behavior for behavior in noted if behavior.record.step >= first)
-        pages = (behavior_pages(name, behavior, screen) for behavior in seen)
-        _show_behaviors(pages, last - first + 1, speed)
+        braille = shows_braille()
+        parts = (behavior_frames(name, one, place, braille=braille) for one in noted())
+        _show(parts, last - first + 1, speed)
     else:
         with progress(f"run {run}", last) as bar:
-            for behavior in noted:
+            for behavior in noted():
                 bar.update(behavior.record.step, f"behavior {behavior.record.step}")
     if as_json:
-        show_json({"run": run, "behaviors": noted.done, **differences_json(noted.differences)})
-    say(f"run {run}: {verdict(noted.done, noted.differences, 'behavior', info.behaviors)}")
-    return 1 if noted.differences else 0
-
-
-def _show_behaviors(behaviors: "Iterator[Iterator[Page]]", count: int, speed: float | None) -> None:
-    """Show behaviors: played, one at a time, or, where nobody answers, each as it ends."""
-    from affcli.lab.filming import FRAME_RATE
-
-    if speed is not None and on_terminal():
-        play(chain.from_iterable(behaviors), FRAME_RATE * speed)
-    elif interactive():
-        for number, pages in enumerate(behaviors, 1):
-            play(pages, FRAME_RATE * STEPWISE)
-            if number < count and asked("Enter: the next; q: leave > ") != "":
-                return
-    else:
-        show(*map(_last, behaviors))
+        show_json({"run": run, "behaviors": done, **differences_json(differences)})
+    say(f"run {run}: {verdict(done, differences, 'behavior', info.behaviors)}")
+    return 1 if differences else 0
 
 
 def _replay_all(store: "Store", *, as_json: bool) -> int:

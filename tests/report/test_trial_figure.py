@@ -52,9 +52,9 @@ def test_a_panel_shows_what_was_expected_and_what_was_seen() -> None:
     moves = moves_in(panel)
     assert set(moves) == {BLUE, INK}
     for color, movement in ((BLUE, step.expected), (INK, step.seen)):
-        start, end = moves[color]
-        assert start == START
-        assert end == pytest.approx((START.x + movement.dx, START.y + movement.dy))
+        begins, ends = moves[color]
+        assert begins == START
+        assert ends == pytest.approx((START.x + movement.dx, START.y + movement.dy))
     pucks = {patch.center for patch in panel.patches if isinstance(patch, Circle)}
     assert pucks == {step.puck_start, step.puck_end}
 
