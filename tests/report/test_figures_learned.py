@@ -22,7 +22,7 @@ from affcli.core.tool import ToolName
 from affcli.report.fates import Fate, RowView
 from affcli.report.figures.affordances import affordances_figure
 from affcli.report.figures.canvas import FORMATS, ONE_COLUMN, encoded, style
-from affcli.report.figures.learning import MOST_CURVES, curves_figure
+from affcli.report.figures.learning import MOST_CURVES, bands_figure, curves_figure
 from affcli.report.figures.row import row_figure
 from affcli.report.figures.things import round_length
 from affcli.report.figures.tools import tools_figure
@@ -187,6 +187,17 @@ def test_many_robots_are_a_column_a_tool_on_the_same_axes() -> None:
         top = max(tool.rows.high)
         assert axes.get_ylim()[1] >= top
     assert {"mean of 3 robots", "range of the robots"} <= set(texts(figure))
+
+
+def test_more_tools_than_a_row_holds_go_on_below() -> None:
+    many = [replace(drawn.bands()[0], tool=f"tool {n}") for n in range(7)]
+    figure = bands_figure(many)
+    titles = [axes.get_title() for axes in figure.axes if axes.get_title()]
+    assert titles == [f"Tool {n}" for n in range(7)]
+    assert len(figure.axes) == 14
+    tools = [replace(T_HOOK, name=ToolName(f"tool {n}")) for n in range(9)]
+    shown = texts(tools_figure(tools, (T_HOOK, L_HOOK), 1.5))
+    assert {f"Tool {n}" for n in range(9)} <= set(shown)
 
 
 @given(st.floats(1e-3, 1e6))

@@ -1,6 +1,5 @@
 """What a tool affords, as arrows over its outline: a panel a behavior and distance (Fig. 6)."""
 
-import math
 from collections.abc import Mapping, Sequence
 from itertools import zip_longest
 from typing import TYPE_CHECKING
@@ -12,7 +11,7 @@ from affcli.report.fates import Fate, TableView
 from affcli.report.figures.arrows import LOOKS, Arrow, draw_arrows
 from affcli.report.figures.canvas import FAINT, ONE_COLUMN, TWO_COLUMNS, canvas
 from affcli.report.figures.key import draw_key
-from affcli.report.figures.maps import fit_maps, map_panels
+from affcli.report.figures.maps import columns_for, fit_maps, map_panels
 from affcli.report.figures.things import draw_grasp, draw_parts, draw_puck
 from affcli.report.figures.words import call_words
 
@@ -82,9 +81,8 @@ def _arranged(
     longest = max(map(len, groups))
     if longest <= most < len(groups) and most < MOST_BESIDE:
         return [call for group in groups for call in group], longest
-    rows = math.ceil(len(groups) / most)
     by_parameter = [call for calls in zip_longest(*groups) for call in calls if call]
-    return by_parameter, math.ceil(len(groups) / rows)
+    return by_parameter, columns_for(len(groups), most)
 
 
 def _draw_table(

@@ -20,6 +20,7 @@ from affcli.report.figures.canvas import (
     canvas,
 )
 from affcli.report.figures.key import draw_key
+from affcli.report.figures.maps import columns_for
 from affcli.report.figures.words import shown, tool_words
 
 if TYPE_CHECKING:
@@ -71,7 +72,7 @@ def curves_figure(curves: Sequence[Curve]) -> "Figure":
 
 def bands_figure(tools: Sequence[ToolCurves]) -> "Figure":
     """Return many robots' learning: a column a tool, mean and central 95 % of the robots."""
-    columns = min(len(tools), MOST_BESIDE)
+    columns = columns_for(len(tools), MOST_BESIDE)
     rows = 2 * math.ceil(len(tools) / columns)
     robots = max(tool.robots for tool in tools)
     spread = "range" if robots <= WHOLE_RANGE else "central 95 %"
@@ -89,6 +90,7 @@ def bands_figure(tools: Sequence[ToolCurves]) -> "Figure":
                 if one is not first:
                     one.sharey(first)
             pair[0].set_title(tool_words(tool.tool))
+            pair[1].tick_params(labelbottom=True)
             if number % columns == 0:
                 for one, name in zip(pair, NAMES, strict=True):
                     one.set_ylabel(name)

@@ -12,6 +12,11 @@ LAYOUTS = 2
 """Times that a figure is laid out until its height is right."""
 
 
+def columns_for(count: int, most: int) -> int:
+    """Return how many of `count` panels stand in a row, so that all rows are about as full."""
+    return math.ceil(count / math.ceil(count / most))
+
+
 def map_panels(
     figure: FigureBase, count: int, columns: int, labels: tuple[str, str] = ("x (in)", "y (in)")
 ) -> list[Axes]:

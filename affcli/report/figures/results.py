@@ -13,10 +13,13 @@ from matplotlib.ticker import MaxNLocator
 
 from affcli.report.figures.canvas import INK, PALE, SKY, TWO_COLUMNS, VERMILION, canvas, head
 from affcli.report.figures.key import draw_key
+from affcli.report.figures.maps import columns_for
 from affcli.report.results import STARTS, Beside, Results
 
 MOST_BESIDE = 4
 """Goals in a row of the page."""
+UNTRIED = Beside(None, [], 0)
+"""A cell of which nothing is known."""
 DOT = 0.02
 """What an interval of one count is made longer by on both sides, or nothing of it would be seen."""
 RAISED = 0.3
@@ -33,18 +36,19 @@ def results_figure(results: Results) -> Figure:
     """Draw the results: a panel a goal with a row a tool; total and broken tool beside them."""
     goals = list(dict.fromkeys(goal for _, goal in results.cells))
     tools = list(dict.fromkeys(tool for tool, _ in results.cells))
-    across = min(len(goals), MOST_BESIDE)
+    most = max(STARTS, *(cell.tried for cell in results.cells.values()))
+    across = columns_for(len(goals), MOST_BESIDE)
     rows = math.ceil(len(goals) / across)
     with canvas(TWO_COLUMNS, 0.85 + rows * (0.5 + 0.2 * len(tools))) as figure:
         grid = figure.add_gridspec(2 * rows, across + 1)
         for number, goal in enumerate(goals):
             row, column = divmod(number, across)
             axes = figure.add_subplot(grid[2 * row : 2 * row + 2, column])
-            _draw_rows(axes, {tool: results.cells[tool, goal] for tool in tools})
+            _draw_rows(axes, {tool: results.cells.get((tool, goal), UNTRIED) for tool in tools})
             axes.set_title(f"goal {goal}")
-            axes.set_xlabel(f"successes of {STARTS}")
-            axes.set_xticks(range(STARTS + 1))
-            axes.set_xlim(-0.35, STARTS + 0.35)
+            axes.set_xlabel(f"successes of {most}")
+            axes.xaxis.set_major_locator(MaxNLocator(5, integer=True))
+            axes.set_xlim(-0.35, most + 0.35)
             axes.tick_params(labelleft=column == 0)
         sums = (("all trials", results.total), ("broken tool", results.broken))
         for row, (name, beside) in enumerate(sums):
@@ -79,8 +83,9 @@ def _draw_rows(axes: Axes, rows: Mapping[str, Beside]) -> None:
     axes.set_axisbelow(True)
     for y, beside in enumerate(rows.values()):
         _draw_ours(axes, y, beside)
-        fill = "white" if beside.outside else VERMILION
-        axes.plot([beside.paper], [y - RAISED], **PAPER, markerfacecolor=fill, zorder=5)
+        if beside.paper is not None:
+            fill = "white" if beside.outside else VERMILION
+            axes.plot([beside.paper], [y - RAISED], **PAPER, markerfacecolor=fill, zorder=5)
 
 
 def _draw_ours(axes: Axes, y: float, beside: Beside) -> None:
@@ -113,7 +118,7 @@ def _draw_ours(axes: Axes, y: float, beside: Beside) -> None:
 
 def _limits(beside: Beside) -> tuple[float, float]:
     """Return how far the axis of one row reaches: from below all that is drawn to all solved."""
-    low = min(*beside.counts, beside.paper)
+    low = min([*beside.counts, *([] if beside.paper is None else [beside.paper])])
     room = max(1.0, 0.1 * (beside.tried - low))
     return low - room, beside.tried + 0.4 * room
 
