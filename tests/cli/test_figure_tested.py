@@ -33,7 +33,7 @@ def change(database: Path, *statements: str) -> None:
             driver.execute(statement)
 
 
-@pytest.mark.parametrize(("name", "ending"), zip(FIGURES, (".png", ".svg", ".pdf"), strict=True))
+@pytest.mark.parametrize(("name", "ending"), [*zip(FIGURES, (".png", ".svg", ".pdf"), strict=True)])
 def test_the_same_figure_is_the_same_bytes_in_any_process(
     name: str, ending: str, used: Path, tmp_path: Path
 ) -> None:
