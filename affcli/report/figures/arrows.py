@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 Arrow = tuple[Point, Point]
 """Start and end (in, the axes' frame)."""
 
-HEAD_ASPECT = 0.7
-"""Width of a head over its length."""
 LARGEST_HEAD = 0.55
 """A head is at most this share of its arrow."""
 THINNEST = 0.8
@@ -39,6 +37,7 @@ class Look:
         dashes: on and off in points; none for a solid line.
         hollow: the head is an outline.
         width: of the line (points).
+        broad: width of a head over its length.
         level: arrows of a higher level lie over those of a lower.
     """
 
@@ -46,6 +45,7 @@ class Look:
     dashes: tuple[float, ...] = ()
     hollow: bool = False
     width: float = 0.8
+    broad: float = 0.7
     level: float = 5.0
 
     @property
@@ -75,7 +75,8 @@ def draw_arrows(axes: "Axes", arrows: Sequence[Arrow], look: Look, head: float) 
     if not arrows:
         return
     sizes = [min(head, LARGEST_HEAD * math.dist(*arrow)) for arrow in arrows]
-    shafts, heads = zip(*map(_parts, arrows, sizes), strict=True)
+    drawn = [_parts(arrow, size, look.broad) for arrow, size in zip(arrows, sizes, strict=True)]
+    shafts, heads = zip(*drawn, strict=True)
     axes.add_collection(
         LineCollection(
             shafts,
@@ -120,7 +121,7 @@ class ArrowKey(HandlerBase):
         look: Look = orig_handle
         middle = 0.5 * height - ydescent
         ends = Point(-xdescent, middle), Point(width - xdescent, middle)
-        shaft, tip = _parts(ends, max(5.0, 2.5 * look.width))
+        shaft, tip = _parts(ends, max(5.0, 2.8 * look.width), look.broad)
         line = LineCollection(
             [shaft],
             colors=look.color,
@@ -136,12 +137,12 @@ class ArrowKey(HandlerBase):
         return [line, pointed]
 
 
-def _parts(arrow: Arrow, head: float) -> tuple[list[Point], list[Point]]:
+def _parts(arrow: Arrow, head: float, broad: float) -> tuple[list[Point], list[Point]]:
     """Return the line of an arrow, up to its head, and the three corners of the head."""
     start, end = arrow
     length = math.dist(start, end) or 1.0
     ux, uy = (end.x - start.x) / length, (end.y - start.y) / length
-    side = 0.5 * HEAD_ASPECT * head
+    side = 0.5 * broad * head
     neck = Point(end.x - head * ux, end.y - head * uy)
     left = Point(neck.x - side * uy, neck.y + side * ux)
     right = Point(neck.x + side * uy, neck.y - side * ux)

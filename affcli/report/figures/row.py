@@ -104,9 +104,9 @@ def _write_probability(axes: "Axes", row: Affordance) -> None:
     """Write the replication probability as the paper does, and as numbers."""
     counts = f"{row.times_successful} / {row.times_used}"
     axes.text(
-        0.5, 0.6, PROBABILITY, transform=axes.transAxes, ha="center", fontsize=9.0, parse_math=True
+        0.5, 0.6, PROBABILITY, transform=axes.transAxes, ha="center", fontsize=8.0, parse_math=True
     )  # fmt: skip
-    _write(axes, "", "", f"= {counts} = {row.replication_probability:.2f}")
+    _write(axes, "", "", "", f"= {counts} = {row.replication_probability:.2f}")
     if 2 * row.times_successful <= row.times_used:
         _write_below(axes, "excluded: not", "greater than 1/2")
 

@@ -35,7 +35,7 @@ from affcli.report.film import COLUMNS, FilmedStep, FilmedTrial, Shown, take_tit
 BEFORE, AFTER = "#b4b4b4", "#6e6e6e"
 """Outlines of the tool before and after a behavior."""
 PATH: dict[str, Any] = {"color": "#5a5a5a", "linewidth": 0.6}
-EXPECTED, SEEN = Look(BLUE, width=2.4), Look(INK, width=0.9, level=6.0)
+EXPECTED, SEEN = Look(BLUE, width=2.4, broad=1.1), Look(INK, width=0.9, level=6.0)
 """Of two widths: one is seen beside the other where both are the same."""
 HEADS = 1.8, 1.0
 """Lengths of their heads (in of the table)."""
