@@ -36,6 +36,8 @@ from affcli.report import figures
 from affcli.simulation.arm import reach_at
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from affcli.store import Store
 
 OneTool = Annotated[
@@ -93,7 +95,7 @@ def affordances(
         raise UsageError("give --run or --tool, not both")
     if after_trial is not None and (run, tool, compare) != (None, None, None):
         raise UsageError("--after-trial has a run: leave out --run, --tool and --compare")
-    _check_out(out, force=force)
+    check_out(out, force=force)
     with opened(database) as store:
         if after_trial is not None:
             shown = lab.affordance_views.tables_around_trial(store, after_trial)
@@ -106,7 +108,7 @@ def affordances(
             else:
                 shown = lab.affordance_views.table_of_run(store, chosen)
     figure = figures.affordances.affordances_figure(shown.calls, shown.views, shown.key)
-    _save(out, figures.canvas.encoded(figure, out.suffix), shown.title)
+    save_figure(out, figure, shown.title)
 
 
 def row(
@@ -125,10 +127,10 @@ def row(
 
     As in Fig. 5. `affcli sql "select * from affordance_table"` shows the rows with their ids.
     """
-    _check_out(out, force=force)
+    check_out(out, force=force)
     with opened(database) as store:
         title, view = lab.affordance_views.row_shown(store, row)
-    _save(out, figures.canvas.encoded(figures.row.row_figure(view), out.suffix), title)
+    save_figure(out, figures.row.row_figure(view), title)
 
 
 def workspace(
@@ -147,13 +149,13 @@ def workspace(
 
     As in Fig. 8, as a trial begins.
     """
-    _check_out(out, force=force)
+    check_out(out, force=force)
     place = load_settings(config).workspace
     reach = reach_at(place.arm, place.arm.flange_height)
     lying = registry.tool(tool, place.tools)
     figure = figures.workspace.workspace_figure(place, lying, reach)
     words = f"the bare arm reaches from {reach.inner:.1f} to {reach.outer:.1f} in"
-    _save(out, figures.canvas.encoded(figure, out.suffix), f"the table with the {tool}; {words}")
+    save_figure(out, figure, f"the table with the {tool}; {words}")
 
 
 def tools(
@@ -171,18 +173,14 @@ def tools(
 
     As in Figs. 1 and 9, with the names of their parts.
     """
-    _check_out(out, force=force)
+    check_out(out, force=force)
     place = load_settings(config).workspace
     known = [registry.tool(name, place.tools) for name in registry.parts("tools")]
     whole, left = (registry.tool(name, place.tools) for name in (tool, becomes))
     if left.parts_missing_in(whole) or not whole.parts_missing_in(left):
         raise UsageError(f"--becomes {becomes}: a {tool} does not become that by losing parts")
     figure = figures.tools.tools_figure(known, (whole, left), place.puck.radius)
-    _save(
-        out,
-        figures.canvas.encoded(figure, out.suffix),
-        f"{len(known)} tools, and a {tool} that became {becomes}",
-    )
+    save_figure(out, figure, f"{len(known)} tools, and a {tool} that became {becomes}")
 
 
 def learning(
@@ -218,7 +216,7 @@ def learning(
     """
     if run and (tool or session is not None):
         raise UsageError("give --run alone, without --tool and --session")
-    _check_out(out, force=force)
+    check_out(out, force=force)
     names = tool or ()
     with opened(database) as store:
         if session is not None:
@@ -229,18 +227,18 @@ def learning(
                 store, _runs_to_draw(store, run or (), names, database)
             )
             figure = figures.learning.curves_figure(curves)
-    _save(out, figures.canvas.encoded(figure, out.suffix), title)
+    save_figure(out, figure, title)
 
 
-def _check_out(out: Path, *, force: bool) -> None:
+def check_out(out: Path, *, force: bool) -> None:
     """Make sure, before any work, that a figure can be drawn and has a place."""
     require_new(out, force=force, endings=FIGURE_ENDINGS)
     require_figures()
 
 
-def _save(out: Path, data: bytes, title: str) -> None:
+def save_figure(out: Path, figure: "Figure", title: str) -> None:
     """Write a figure and say what it shows."""
-    save(out, data)
+    save(out, figures.canvas.encoded(figure, out.suffix))
     say(f"{title}: {one_line(out)}")
 
 

@@ -1,30 +1,47 @@
 """``affcli figure trial``, ``results`` and ``adaptation``: figures of testing trials (§7)."""
 
-import re
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from affcli.cli.files import require_new, save
-from affcli.cli.options import DEFAULT_DATABASE, Database, Force, checked_count
+from affcli import lab
+from affcli.cli.database import opened
+from affcli.cli.figure_learned import check_out, save_figure
+from affcli.cli.files import save
+from affcli.cli.options import (
+    DEFAULT_DATABASE,
+    Database,
+    FigureOut,
+    Force,
+    check_count,
+    checked_range,
+)
 from affcli.cli.terminal import say
 from affcli.errors import BadInputError, one_line
-from affcli.report.film import MOST_NAMED
+from affcli.report import figures
+from affcli.report.film import MOST_NAMED, shown_of
+from affcli.report.reproduction import ENOUGH_ROBOTS
 
-LARGEST_ID = 2**63 - 1
-ENDINGS = (".png", ".svg", ".pdf")
-Out = Annotated[Path, typer.Option("--out", help="*.png, *.svg or *.pdf.", metavar="FILE")]
 Session = Annotated[
     int | None,
-    typer.Option("--session", help="Its id; the latest finished one if not given.", metavar="ID"),
+    typer.Option(
+        "--session",
+        help="Its id; the latest finished one if not given.",
+        metavar="ID",
+        callback=check_count("--session"),
+    ),
 ]
 
 
 def trial(
-    number: Annotated[int, typer.Argument(help="A trial's id in the database.", metavar="ID")],
+    number: Annotated[
+        int,
+        typer.Argument(
+            help="A trial's id in the database.", metavar="ID", callback=check_count("trial")
+        ),
+    ],
     *,
-    out: Out,
+    out: FigureOut,
     steps: Annotated[
         str | None,
         typer.Option("--steps", help=f"Only these, {MOST_NAMED} at most.", metavar="A-B"),
@@ -37,30 +54,23 @@ def trial(
     Over each panel: the step, its behavior and the row tried; whether it replicated, and the row's
     counters afterwards (successes/uses). Of a trial of many steps some are chosen.
     """
-    checked_count("trial", number, LARGEST_ID)
-    wanted = None if steps is None else checked_steps(steps)
-    require_new(out, force=force, endings=ENDINGS)
-
-    from affcli.lab.drawing import require_figures
-    from affcli.lab.film_strips import film_of
-    from affcli.report.film import shown_of
-    from affcli.store import open_store
-
-    require_figures()
-    with open_store(database, create=False, write=False) as store:
-        film = film_of(store, number, wanted)
-    from affcli.report.figures.canvas import encoded
-    from affcli.report.figures.trial import trial_figure
-
+    wanted = None if steps is None else checked_range("--steps", steps)
+    if wanted is not None and wanted[1] - wanted[0] >= MOST_NAMED:
+        raise BadInputError(
+            f"--steps {steps}: at most {MOST_NAMED} steps fit a page; ask for fewer"
+        )
+    check_out(out, force=force)
+    with opened(database) as store:
+        film = lab.film_strips.film_of(store, number, wanted)
     shown = shown_of(film.steps, wanted)
-    save(out, encoded(trial_figure(film, shown), out.suffix))
     left_out = f"; {shown.note}" if shown.note else ""
-    say(f"{film.title}; {film.course}{left_out}: {one_line(out)}")
+    figure = figures.trial.trial_figure(film, shown)
+    save_figure(out, figure, f"{film.title}; {film.course}{left_out}")
 
 
 def results(
     *,
-    out: Out,
+    out: FigureOut,
     session: Session = None,
     database: Database = DEFAULT_DATABASE,
     force: Force = False,
@@ -71,21 +81,10 @@ def results(
 
     Of a finished reproduction; where there is none, what affcli solve gave, one robot a tool.
     """
-    checked_session(session)
-    require_new(out, force=force, endings=ENDINGS)
-
-    from affcli.lab.drawing import require_figures
-    from affcli.lab.results import results_in
-    from affcli.store import open_store
-
-    require_figures()
-    with open_store(database, create=False, write=False) as store:
-        found = results_in(store, session)
-    from affcli.report.figures.canvas import encoded
-    from affcli.report.figures.results import results_figure
-    from affcli.report.reproduction import ENOUGH_ROBOTS
-
-    save(out, encoded(results_figure(found), out.suffix))
+    check_out(out, force=force)
+    with opened(database) as store:
+        found = lab.results.results_in(store, session)
+    save(out, figures.canvas.encoded(figures.results.results_figure(found), out.suffix))
     if found.session is None:
         say(
             f"no finished reproduction, so results of {found.title}: {one_line(out)}; for those of "
@@ -98,7 +97,7 @@ def results(
 
 def adaptation(
     *,
-    out: Out,
+    out: FigureOut,
     session: Session = None,
     database: Database = DEFAULT_DATABASE,
     force: Force = False,
@@ -108,36 +107,9 @@ def adaptation(
     The share of tries on lost affordances, and the mean replication probability of the rows on the
     missing side; of a session of affcli break-tool, or of a reproduction.
     """
-    checked_session(session)
-    require_new(out, force=force, endings=ENDINGS)
-
-    from affcli.lab.adaptation import adaptation_in
-    from affcli.lab.drawing import require_figures
-    from affcli.store import open_store
-
-    require_figures()
-    with open_store(database, create=False, write=False) as store:
-        course = adaptation_in(store, session)
-    from affcli.report.figures.adaptation import adaptation_figure
-    from affcli.report.figures.canvas import encoded
-
-    save(out, encoded(adaptation_figure(course), out.suffix))
+    check_out(out, force=force)
+    with opened(database) as store:
+        course = lab.adaptation.adaptation_in(store, session)
     note = f", {course.note}" if course.note else ""
-    say(f"adaptation, session {course.session}: {course.title}{note}: {one_line(out)}")
-
-
-def checked_session(session: int | None) -> None:
-    """Refuse a number that no session has."""
-    if session is not None:
-        checked_count("--session", session, LARGEST_ID)
-
-
-def checked_steps(text: str) -> tuple[int, int]:
-    """Return the first and last step asked for; BadInputError when they are none."""
-    found = re.fullmatch(r"([0-9]{1,18})(?:-([0-9]{1,18}))?", text)
-    first, last = (int(found[1]), int(found[2] or found[1])) if found else (0, 0)
-    if not 1 <= first <= last:
-        raise BadInputError(f"--steps {one_line(text, 40)}: give two steps, as in --steps 3-8")
-    if last - first >= MOST_NAMED:
-        raise BadInputError(f"--steps {text}: at most {MOST_NAMED} steps fit a page; ask for fewer")
-    return first, last
+    figure = figures.adaptation.adaptation_figure(course)
+    save_figure(out, figure, f"adaptation, session {course.session}: {course.title}{note}")

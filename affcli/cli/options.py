@@ -5,6 +5,7 @@ right. An option that only one command has stands in that command's file.
 """
 
 import math
+import re
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Annotated, Any
@@ -53,6 +54,15 @@ def checked_count(option: str, count: int, most: int) -> int:
     if not 1 <= count <= most:
         raise BadInputError(f"{option} {one_line(count, 40)}: must lie in 1 to {most}")
     return count
+
+
+def checked_range(option: str, text: str) -> tuple[int, int]:
+    """Return the first and the last number of ``3-5``, or of ``3``; BadInputError otherwise."""
+    found = re.fullmatch(r"([0-9]{1,9})(?:-([0-9]{1,9}))?", text)
+    first, last = (int(found[1]), int(found[2] or found[1])) if found else (0, 0)
+    if not 1 <= first <= last:
+        raise BadInputError(f"{option} {one_line(text, 40)}: must be a number or two, as in 3-5")
+    return first, last
 
 
 def checked_length(option: str, length: float) -> float:

@@ -1,25 +1,27 @@
 """``affcli replay``: do a stored trial or learning run again and watch (§6, §7)."""
 
-import re
-from collections.abc import Iterator, Sequence
+from collections import deque
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from affcli import lab
+from affcli.cli.database import opened
 from affcli.cli.files import require_new, save
 from affcli.cli.options import (
     DEFAULT_DATABASE,
-    LARGEST_ID,
     AsJson,
     Database,
     Force,
-    checked_count,
+    Run,
+    check_count,
+    checked_range,
 )
 from affcli.cli.terminal import (
     asked,
-    columns,
     interactive,
     on_terminal,
     play,
@@ -29,12 +31,22 @@ from affcli.cli.terminal import (
     show_json,
     shows_braille,
 )
+from affcli.core.replay import Difference, Replay, ReplayedBehavior
 from affcli.errors import BadInputError, UsageError, one_line
+from affcli.lab.drawing import require_figures
+from affcli.lab.filming import FRAME_RATE
+from affcli.report.replaying import (
+    Frame,
+    behavior_frames,
+    closing_words,
+    differences_json,
+    opening_frame,
+    replay_json,
+    trial_frames,
+    verdict,
+)
 
 if TYPE_CHECKING:
-    from affcli.core.replay import Difference, Replay, ReplayedBehavior
-    from affcli.core.workspace import Workspace
-    from affcli.report.replaying import Page, Screen
     from affcli.store import Store
 
 STEPWISE = 4.0
@@ -45,9 +57,11 @@ MOST_PICTURES = 4_500
 MOST_SAID = 20
 """Trials that differ from their record; --json names all."""
 
-Trial = Annotated[int | None, typer.Argument(help="A trial's id in the database.", metavar="TRIAL")]
-Run = Annotated[
-    int | None, typer.Option("--run", help="A learning run's id, instead.", metavar="ID")
+Trial = Annotated[
+    int | None,
+    typer.Argument(
+        help="A trial's id in the database.", metavar="TRIAL", callback=check_count("TRIAL")
+    ),
 ]
 All = Annotated[bool, typer.Option("--all", help="Every trial: only whether it is the same.")]
 Steps = Annotated[str | None, typer.Option("--steps", help="One or some: 3 or 3-5.", metavar="N")]
@@ -78,16 +92,12 @@ def replay(
     On a terminal each step waits for Enter; --speed plays without waiting.
     """
     _check_what(trial, run, every=every, shown=(steps, speed), gif=gif, as_json=as_json)
-    wanted = _range(steps)
+    wanted = None if steps is None else checked_range("--steps", steps)
     if gif is not None:
-        from affcli.lab.drawing import require_figures
-
         require_new(gif, force=force, endings=(".gif",))
         require_figures()
 
-    from affcli.store import open_store
-
-    with open_store(database, create=False, write=False) as store:
+    with opened(database) as store:
         if every:
             return _replay_all(store, as_json=as_json)
         if run is not None:
@@ -108,9 +118,6 @@ def _check_what(
     steps, speed = shown
     if [trial is not None, run is not None, every].count(True) != 1:
         raise UsageError("what? give one of TRIAL, --run ID and --all")
-    for option, number in (("TRIAL", trial), ("--run", run)):
-        if number is not None:
-            checked_count(option, number, LARGEST_ID)
     if speed is not None and not SLOWEST <= speed <= FASTEST:
         raise BadInputError(f"--speed {speed}: must lie in {SLOWEST:g} to {FASTEST:g}")
     if every and (steps is not None or speed is not None):
@@ -119,17 +126,6 @@ def _check_what(
         raise UsageError("--gif is of one trial: give TRIAL")
     if as_json and speed is not None and gif is None:
         raise UsageError("--json plays nothing: leave out --speed")
-
-
-def _range(text: str | None) -> tuple[int, int] | None:
-    """Return the first and the last number of ``3-5``."""
-    if text is None:
-        return None
-    found = re.fullmatch(r"([0-9]{1,9})(?:-([0-9]{1,9}))?", text)
-    first, last = (int(found[1]), int(found[2] or found[1])) if found else (0, 0)
-    if not 1 <= first <= last:
-        raise BadInputError(f"--steps {one_line(text, 40)}: must be a number or two, as in 3-5")
-    return first, last
 
 
 def _replay_trial(
@@ -142,10 +138,7 @@ def _replay_trial(
     as_json: bool,
 ) -> int:
     """Do one trial again; show it, film it, or give it as JSON."""
-    from affcli.lab.replaying import replay_trial
-    from affcli.report.replaying import closing_words, replay_json
-
-    again = replay_trial(store, trial)
+    again = lab.replaying.replay_trial(store, trial)
     first, last = wanted or (1, len(again.steps))
     if last > len(again.steps):
         raise UsageError(f"no step {last} in trial {trial}; it has {len(again.steps) or 'none'}")
@@ -154,17 +147,19 @@ def _replay_trial(
         _film(again, numbers, speed or 1.0, gif)
     if as_json:
         show_json(replay_json(again, numbers))
+    elif gif is None and numbers:
+        braille = shows_braille()
+        steps = (trial_frames(again, number, braille=braille) for number in numbers)
+        _show(steps, len(numbers), speed)
     elif gif is None:
-        _show_steps(again, numbers, speed)
+        show(opening_frame(again, braille=shows_braille()))
     say(closing_words(again))
     return 1 if again.differences else 0
 
 
-def _film(replay: "Replay", numbers: Sequence[int], speed: float, gif: Path) -> None:
+def _film(replay: Replay, numbers: Sequence[int], speed: float, gif: Path) -> None:
     """Write a film of some steps."""
-    from affcli.lab.replaying import film_length, gif_of
-
-    count = film_length(replay, numbers, speed)
+    count = lab.replaying.film_length(replay, numbers, speed)
     if count == 0:
         raise UsageError(f"trial {replay.trial_id} has no steps: there is nothing to film")
     if count > MOST_PICTURES:
@@ -172,84 +167,25 @@ def _film(replay: "Replay", numbers: Sequence[int], speed: float, gif: Path) -> 
             f"a film of {count} pictures: at most {MOST_PICTURES}; give --steps A-B or more --speed"
         )
     with progress("filming", count) as bar:
-        film = gif_of(replay, numbers, speed, lambda n: bar.update(n, f"{n} pictures"))
+        film = lab.replaying.gif_of(
+            replay, numbers, speed, lambda n: bar.update(n, f"{n} pictures")
+        )
     save(gif, film)
     which = f"step {numbers[0]}" if len(numbers) == 1 else f"steps {numbers[0]}-{numbers[-1]}"
     say(f"trial {replay.trial_id}, {which}: {one_line(gif)}")
 
 
-def _screen(workspace: "Workspace") -> "Screen":
-    """Return what draws pages for this terminal."""
-    from affcli.report.replaying import Screen
-
-    return Screen(workspace, columns(), braille=shows_braille())
-
-
-def _show_steps(replay: "Replay", numbers: Sequence[int], speed: float | None) -> None:
-    """Show steps: played, one at a time, or, where nobody answers, each as it ends."""
-    from affcli.lab.filming import FRAME_RATE
-    from affcli.report.replaying import opening_page, trial_pages
-
-    screen = _screen(replay.workspace)
-    if not numbers:
-        show(opening_page(replay, screen))
-    elif speed is not None and on_terminal():
-        pages = (page for number in numbers for page in trial_pages(replay, number, screen))
-        play(pages, FRAME_RATE * speed)
+def _show(parts: Iterable[Iterator[Frame]], count: int, speed: float | None) -> None:
+    """Show steps or behaviors: played, one at a time, or, where nobody answers, each as it ends."""
+    if speed is not None and on_terminal():
+        play(chain.from_iterable(parts), FRAME_RATE * speed)
     elif interactive():
-        number: int | None = numbers[0]
-        while number is not None:
-            play(trial_pages(replay, number, screen), FRAME_RATE * STEPWISE)
-            number = _next(number, numbers)
+        for number, frames in enumerate(parts, 1):
+            play(frames, FRAME_RATE * STEPWISE)
+            if number < count and asked("Enter: the next; q: leave > ") != "":
+                return
     else:
-        show(*(_last(trial_pages(replay, number, screen)) for number in numbers))
-
-
-def _last(pages: "Iterator[Page]") -> "Page":
-    """Return the last page."""
-    *_, last = pages
-    return last
-
-
-def _next(number: int, numbers: Sequence[int]) -> int | None:
-    """Ask which step comes next; None for none."""
-    if len(numbers) == 1:
-        return None
-    following = number + 1 if number + 1 in numbers else None
-    enter = "the end" if following is None else f"step {following}"
-    while True:
-        answer = asked(f"Enter: {enter}; {numbers[0]}-{numbers[-1]}: that; q: leave > ")
-        if answer is None or answer.lower() in {"q", "quit"}:
-            return None
-        if not answer:
-            return following
-        if re.fullmatch("[0-9]{1,9}", answer) and int(answer) in numbers:
-            return int(answer)
-
-
-class _Noted:
-    """Behaviors done again, and what differs in them.
-
-    Args:
-        behaviors: as they are done.
-        last: the number of the last one that should be.
-    """
-
-    def __init__(self, behaviors: "Iterator[ReplayedBehavior]", last: int) -> None:
-        self._behaviors, self._last = behaviors, last
-        self.done = 0
-        self.differences: list[Difference] = []
-
-    def __iter__(self) -> "Iterator[ReplayedBehavior]":
-        from affcli.core.replay import Difference
-
-        for behavior in self._behaviors:
-            self.done = behavior.record.step
-            self.differences += behavior.differences
-            yield behavior
-        if self.done < self._last:
-            missing = self.done + 1
-            self.differences.append(Difference(missing, "number", missing, None))
+        show(*(deque(frames, maxlen=1)[0] for frames in parts))
 
 
 def _replay_run(
@@ -261,60 +197,49 @@ def _replay_run(
     as_json: bool,
 ) -> int:
     """Do a learning run again; show its behaviors on a terminal, or those that were asked for."""
-    from affcli.config import settings_from_json
-    from affcli.lab.replaying import replay_run
-    from affcli.report.replaying import behavior_pages, differences_json, verdict
-
-    info = store.learning_run(run)
+    info = store.learning.run(run)
     first, last = wanted or (1, info.behaviors)
     if last > info.behaviors:
         raise UsageError(f"no behavior {last} in run {run}; it has {info.behaviors or 'none'}")
-    noted = _Noted(replay_run(store, info, first, last), last)
+    done, differences = 0, list[Difference]()
+
+    def noted() -> Iterator[ReplayedBehavior]:
+        """Yield the behaviors that were asked for; keep how many were done and what differs."""
+        nonlocal done
+        for behavior in lab.replaying.replay_run(store, info, first, last):
+            done = behavior.record.step
+            differences.extend(behavior.differences)
+            if done >= first:
+                yield behavior
+        if done < last:
+            differences.append(Difference(done + 1, "number", done + 1, None))
+
     watched = wanted is not None or interactive() or (speed is not None and on_terminal())
     if watched and not as_json and last:
-        screen = _screen(settings_from_json(info.spec.settings).workspace)
+        place = lab.run_parts.settings_of(info.spec).workspace
         name = f"Run {run}, {info.spec.tool}, {info.behaviors} behaviors"
-        # Those before the first are only there when they differ from their record.
-        seen = (behavior for behavior in noted if behavior.record.step >= first)
-        pages = (behavior_pages(name, behavior, screen) for behavior in seen)
-        _show_behaviors(pages, last - first + 1, speed)
+        braille = shows_braille()
+        parts = (behavior_frames(name, one, place, braille=braille) for one in noted())
+        _show(parts, last - first + 1, speed)
     else:
         with progress(f"run {run}", last) as bar:
-            for behavior in noted:
+            for behavior in noted():
                 bar.update(behavior.record.step, f"behavior {behavior.record.step}")
     if as_json:
-        show_json({"run": run, "behaviors": noted.done, **differences_json(noted.differences)})
-    say(f"run {run}: {verdict(noted.done, noted.differences, 'behavior', info.behaviors)}")
-    return 1 if noted.differences else 0
-
-
-def _show_behaviors(behaviors: "Iterator[Iterator[Page]]", count: int, speed: float | None) -> None:
-    """Show behaviors: played, one at a time, or, where nobody answers, each as it ends."""
-    from affcli.lab.filming import FRAME_RATE
-
-    if speed is not None and on_terminal():
-        play(chain.from_iterable(behaviors), FRAME_RATE * speed)
-    elif interactive():
-        for number, pages in enumerate(behaviors, 1):
-            play(pages, FRAME_RATE * STEPWISE)
-            if number < count and asked("Enter: the next; q: leave > ") != "":
-                return
-    else:
-        show(*map(_last, behaviors))
+        show_json({"run": run, "behaviors": done, **differences_json(differences)})
+    say(f"run {run}: {verdict(done, differences, 'behavior', info.behaviors)}")
+    return 1 if differences else 0
 
 
 def _replay_all(store: "Store", *, as_json: bool) -> int:
     """Do every stored trial again; say how many equal their record."""
-    from affcli.lab.replaying import replay_trial
-    from affcli.report.replaying import verdict
-
-    trials = store.trials()
+    trials = store.trials.trials()
     if not trials:
         raise UsageError("no trials yet; first run: affcli solve --goal 1")
     differing: dict[int, str] = {}
     with progress("replaying", len(trials)) as bar:
         for number, trial in enumerate(trials, 1):
-            again = replay_trial(store, trial.id)
+            again = lab.replaying.replay_trial(store, trial.id)
             if again.differences:
                 differing[trial.id] = verdict(len(again.steps), again.differences)
             bar.update(number, f"{number} of {len(trials)} trials")

@@ -157,11 +157,6 @@ def asked(question: str) -> str | None:
     return answer.strip() if answer else None
 
 
-def columns() -> int:
-    """Return how wide the terminal is that stdout goes to; 80 without one."""
-    return _console(sys.stdout).width
-
-
 def shows_braille() -> bool:
     """Tell whether stdout can be written in Unicode, to a terminal that has braille letters.
 

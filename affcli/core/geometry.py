@@ -80,14 +80,19 @@ class ConvexPolygon:
         return ConvexPolygon(tuple(Point(x + dx, y + dy) for x, y in self.vertices))
 
     def turned(self, angle: float) -> "ConvexPolygon":
-        """Return this polygon turned about the origin (rad, counter-clockwise); itself for 0."""
+        """Return this polygon turned about the origin by `angle` (rad, counter-clockwise)."""
         if angle == 0.0:
             return self
-        c, s = math.cos(angle), math.sin(angle)
-        return ConvexPolygon(tuple(Point(c * x - s * y, s * x + c * y) for x, y in self.vertices))
+        cos, sin = math.cos(angle), math.sin(angle)
+        return ConvexPolygon(
+            tuple(Point(cos * x - sin * y, sin * x + cos * y) for x, y in self.vertices)
+        )
 
     def placed(self, pose: Pose) -> "ConvexPolygon":
-        """Return this polygon turned about the origin and then moved, as a pose says."""
+        """Return this polygon, given in the frame of `pose`, in the frame that `pose` is given in.
+
+        A part of a tool, placed at the wrist, is where it lies on the table.
+        """
         return self.turned(pose.angle).moved(pose.x, pose.y)
 
     def distance(self, point: Point) -> float:

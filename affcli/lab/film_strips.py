@@ -1,18 +1,15 @@
 """A stored trial, gathered for its film strip."""
 
-from collections.abc import Iterable
-from itertools import chain
-
-from affcli.config import settings_from_json
+from affcli.behaviors.grasping import hold_of
 from affcli.core.behavior import BehaviorCall
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
-from affcli.core.task import goal_regions, start_positions
-from affcli.core.tool import ToolName, paper_tools
-from affcli.core.trial import TrialSpec
+from affcli.core.geometry import Pose
+from affcli.core.records import StoredStep, TrialInfo
 from affcli.errors import UsageError, one_line
-from affcli.lab.plausible import check_numbers, check_trial
+from affcli.lab.replaying import require_shape
+from affcli.lab.run_parts import settings_of
 from affcli.report.film import FilmedStep, FilmedTrial
-from affcli.store import Store, StoredStep, TrialInfo
+from affcli.store import Store
 
 LONGEST_BEHAVIOR = 20
 """Letters of a behavior's name and distance; those of affcli have 17 at most."""
@@ -28,27 +25,26 @@ def film_of(store: Store, trial_id: int, wanted: tuple[int, int] | None = None) 
 
     Raises:
         UsageError: there is no such trial, or no such step in it.
-        DatabaseError: it holds what affcli did not write.
+        DatabaseError: it is not known what its tools look like.
     """
-    info = store.trial(trial_id)
-    steps = tuple(map(_filmed, store.trial_steps(trial_id)))
+    info = store.trials.trial(trial_id)
+    require_shape(info)
+    steps = tuple(map(_filmed, store.trials.steps(trial_id)))
     if wanted is not None:
         _require_steps(trial_id, wanted, len(steps))
-    settings, spec = settings_from_json(info.settings), info.spec
-    layout, table = settings.workspace.layout, settings.workspace.table
-    _require_known(trial_id, spec, steps)
-    tools = paper_tools(settings.workspace.tools)
-    believed, held = tools[ToolName(spec.tool)], tools[ToolName(spec.shape)]
+    spec, learned = info.spec, info.learned
+    workspace, hold = settings_of(learned).workspace, hold_of(learned.binding)
+    believed, held = learned.held.held(hold), spec.held.held(hold)
     return FilmedTrial(
         title=_title(info),
         ending=None if info.outcome is None else info.outcome.value,
         parts=held.parts,
         missing=believed.parts_missing_in(held),
-        goal=goal_regions(layout)[spec.goal],
-        wrist=settings.workspace.wrist_start,
-        puck=start_positions(layout)[spec.start],
-        puck_radius=settings.workspace.puck.radius,
-        table=(-table.half_width, table.near, table.half_width, table.far),
+        goal=spec.task.goal,
+        wrist=Pose(*workspace.wrist_start),
+        puck=spec.task.start,
+        puck_radius=workspace.puck.radius,
+        table=workspace.table,
         steps=steps,
     )
 
@@ -61,8 +57,9 @@ def _filmed(step: StoredStep) -> FilmedStep:
         row=step.affordance_id,
         wrist_start=step.wrist_start,
         wrist_end=step.wrist_end,
-        puck_start=step.true_start,
-        puck_end=step.true_end,
+        # Where a world does not tell the truth, what was seen stands for it.
+        puck_start=step.true_start or step.seen_start,
+        puck_end=step.true_end or step.seen_end,
         expected=step.expected,
         seen=step.seen,
         moved=step.seen_distance > MOVEMENT_THRESHOLD,
@@ -86,15 +83,6 @@ def _require_steps(trial_id: int, wanted: tuple[int, int], count: int) -> None:
         known = f"it has steps 1 to {count}" if count else "it has none"
         missing = max(wanted[0], count + 1)
         raise UsageError(f"no step {missing} in trial {trial_id}; {known}")
-
-
-def _require_known(trial_id: int, spec: TrialSpec, steps: Iterable[FilmedStep]) -> None:
-    """Refuse tools and places that no trial of affcli has."""
-    check_trial(trial_id, spec)
-    for step in steps:
-        places = (step.wrist_start, step.wrist_end, step.puck_start, step.puck_end)
-        movements = (*step.expected, *step.seen)
-        check_numbers(f"trial {trial_id}", (*chain.from_iterable(places), *movements))
 
 
 def _title(info: TrialInfo) -> str:

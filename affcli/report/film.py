@@ -3,10 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from affcli.core.geometry import Point
+from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Movement
 from affcli.core.task import GoalRegion
 from affcli.core.tool import ToolPart
+from affcli.core.workspace import TableSurface
 
 COLUMNS = 4
 """Panels in a row: narrower ones leave no room for what stands over them."""
@@ -25,7 +26,7 @@ class FilmedStep:
         behavior: the exploratory behavior, in words.
         row: the row tried, by its id in the database.
         wrist_start, wrist_end: the wrist before and after the exploratory behavior; when the tool
-            could not be lowered, before and after it was carried there (in, table frame).
+            could not be lowered, before and after it was carried there (in, rad, table frame).
         puck_start, puck_end: where the attractor truly was (in, table frame).
         expected, seen: movement of the attractor that the row predicts, and that was observed.
         moved: the movement seen is one that the change detection function T detects.
@@ -39,8 +40,8 @@ class FilmedStep:
     number: int
     behavior: str
     row: int
-    wrist_start: Point
-    wrist_end: Point
+    wrist_start: Pose
+    wrist_end: Pose
     puck_start: Point
     puck_end: Point
     expected: Movement
@@ -64,9 +65,9 @@ class FilmedTrial:
         parts: of the shape that was held (tool frame).
         missing: parts that the robot believed to hold as well (tool frame).
         goal: the goal region.
-        wrist, puck: where they were at the start (in, table frame).
+        wrist, puck: where they were at the start (in, rad, table frame).
         puck_radius: in.
-        table: left, bottom, right and top of the table (in, table frame).
+        table: its sizes.
         steps: all there are.
     """
 
@@ -75,10 +76,10 @@ class FilmedTrial:
     parts: tuple[ToolPart, ...]
     missing: tuple[ToolPart, ...]
     goal: GoalRegion
-    wrist: Point
+    wrist: Pose
     puck: Point
     puck_radius: float
-    table: tuple[float, float, float, float]
+    table: TableSurface
     steps: tuple[FilmedStep, ...]
 
     @property
@@ -119,10 +120,7 @@ class Shown:
         if not self.left_out:
             return ""
         vain = sum(not step.replicated for step in self.left_out)
-        return (
-            f"left out: {steps_named([step.number for step in self.left_out])}"
-            f" ({vain} of {len(self.left_out)} not replicated)"
-        )
+        return f"left out: {len(self.left_out)} steps, of which {vain} not replicated"
 
 
 def shown_of(steps: Sequence[FilmedStep], wanted: tuple[int, int] | None) -> Shown:
@@ -156,18 +154,13 @@ def _takes(steps: Sequence[FilmedStep]) -> tuple[tuple[FilmedStep, ...], ...]:
     """Return the steps, those together that did the same in vain one after the other."""
     takes: list[tuple[FilmedStep, ...]] = []
     for step in steps:
-        before = takes[-1][-1] if takes else None
-        if before is not None and _again(before, step):
+        before = takes[-1][-1] if takes else step
+        still = not (before.moved or step.moved)
+        if takes and still and (before.row, before.blocked) == (step.row, step.blocked):
             takes[-1] += (step,)
         else:
             takes.append((step,))
     return tuple(takes)
-
-
-def _again(before: FilmedStep, step: FilmedStep) -> bool:
-    """Tell whether two steps tried the same row and both left the attractor where it was."""
-    still = not (before.moved or step.moved)
-    return still and (before.row, before.blocked) == (step.row, step.blocked)
 
 
 def take_title(take: Sequence[FilmedStep]) -> str:
@@ -186,15 +179,3 @@ def take_verdict(take: Sequence[FilmedStep]) -> str:
     times = f" {len(take)} times" if len(take) > 1 else ""
     ending = ", excluded" if last.excluded else ""
     return f"{came_of_it}{times}: {last.successful}/{last.used}{ending}"
-
-
-def steps_named(numbers: Sequence[int]) -> str:
-    """Return step numbers in words: ``step 4`` or ``steps 4-7, 9``."""
-    runs: list[list[int]] = []
-    for number in sorted(numbers):
-        if runs and number == runs[-1][-1] + 1:
-            runs[-1].append(number)
-        else:
-            runs.append([number])
-    words = [str(run[0]) if len(run) == 1 else f"{run[0]}-{run[-1]}" for run in runs]
-    return f"step{'s' if len(numbers) != 1 else ''} {', '.join(words)}"

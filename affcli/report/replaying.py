@@ -1,12 +1,12 @@
-"""A replay on the terminal, one screen a moment; and as JSON types."""
+"""A replay on the terminal, one frame a moment; and as JSON types."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import partial, reduce
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from itertools import groupby
 from textwrap import fill
 from typing import Any
 
-from rich.console import Group, RenderableType
+from rich.console import Console, ConsoleOptions, RenderableType
 from rich.table import Table
 from rich.text import Text
 
@@ -28,76 +28,58 @@ MOST_CLOSE = 2
 MOST_DIFFERENCES = 5
 
 
-class Page:
-    """What is drawn only when it is shown: of a film that plays fast most pages never are."""
-
-    def __init__(self, draw: Callable[[], RenderableType]) -> None:
-        self._draw = draw
-
-    def __rich__(self) -> RenderableType:
-        return self._draw()
-
-
-class Screen:
-    """One moment of a replay as a page that fits into a terminal.
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """One moment of a replay; drawn when it is shown, for in a fast film most frames never are.
 
     Args:
+        title: which trial and step.
+        phase: what the robot is doing.
+        scene: what is on the table.
+        path: where the attractor has been (in, table frame).
+        words: what there is to say, one paragraph each.
         workspace: where it takes place.
-        columns: how wide the terminal is.
-        braille: it can show braille letters.
+        braille: the terminal can show braille letters.
     """
 
-    def __init__(self, workspace: Workspace, columns: int, *, braille: bool) -> None:
-        self._workspace = workspace
-        self._wide = columns >= WIDE
-        self._view = View.of(workspace, min(columns - 1, MAP_WIDTH), MAP_ROWS)
-        self._braille = braille
-        self._for_words = columns - (self._view.columns + GAP if self._wide else 0)
+    title: str
+    phase: Text
+    scene: Scene
+    path: Sequence[Point]
+    words: Sequence[str]
+    workspace: Workspace
+    braille: bool
 
-    def page(
-        self, title: str, phase: Text, scene: Scene, path: Sequence[Point], words: Sequence[str]
-    ) -> Page:
-        """Return a title, what is going on, the table, and what there is to say.
-
-        Args:
-            title: which trial and step.
-            phase: what the robot is doing.
-            scene: what is on the table.
-            path: where the attractor has been.
-            words: one paragraph each.
-        """
-
-        def draw() -> RenderableType:
-            drawn = table_map(scene, self._workspace, path, self._view, braille=self._braille)
-            # A paragraph's further lines are indented, so that it is seen where the next begins.
-            wrapped = partial(
-                fill, width=self._for_words, subsequent_indent="  ", break_on_hyphens=False
-            )
-            text = Text("\n".join(map(wrapped, words)))
-            body: RenderableType = Group(drawn, text)
-            if self._wide:
-                grid = Table.grid(padding=(0, GAP, 0, 0), pad_edge=False)
-                grid.add_column(width=self._view.columns)
-                grid.add_column()
-                grid.add_row(drawn, text)
-                body = grid
-            return Group(Text(title, style="bold"), phase, body)
-
-        return Page(draw)
-
-
-CHOOSING, PLACING, EXPLORING, COMPARING = range(4)
-PHASES = ("choose a row", "position wrist", "behavior", "compare")
-"""Of a step of the procedure (Fig. 7), by the numbers above."""
+    def __rich_console__(
+        self, console: Console, options: ConsoleOptions
+    ) -> Iterator[RenderableType]:
+        """Yield the title, what is going on, the table, and the words beside it or below."""
+        columns = options.max_width
+        view = View.of(self.workspace, min(columns - 1, MAP_WIDTH), MAP_ROWS)
+        drawn = table_map(self.scene, self.workspace, self.path, view, braille=self.braille)
+        width = columns - (view.columns + GAP if columns >= WIDE else 0)
+        # Further lines of a paragraph are indented, so that it is seen where the next begins.
+        words = "\n".join(
+            fill(paragraph, width, subsequent_indent="  ", break_on_hyphens=False)
+            for paragraph in self.words
+        )
+        yield Text(self.title, style="bold")
+        yield self.phase
+        if columns < WIDE:
+            yield drawn
+            yield Text(words)
+        else:
+            grid = Table.grid(padding=(0, GAP, 0, 0), pad_edge=False)
+            grid.add_column(width=view.columns)
+            grid.add_row(drawn, Text(words))
+            yield grid
 
 
 def phase_line(now: int, behavior: str) -> Text:
-    """Return the steps of the procedure (Fig. 7) with the present one marked."""
-    words = [*PHASES[:2], behavior, PHASES[3]]
+    """Return the steps of the procedure (Fig. 7) with the one of this number marked."""
     line = Text()
-    for number, word in enumerate(words):
-        if number:
-            line.append(" > ", style="dim")
+    for number, word in enumerate(("choose a row", "position wrist", behavior, "compare")):
+        line.append(" > " if number else "", style="dim")
         here = number == now
         line.append(f"[{word}]" if here else word, style="bold" if here else "dim")
     return line
@@ -128,54 +110,49 @@ def step_words(replay: Replay, step: ReplayedStep) -> tuple[list[str], list[str]
     return why, [happened, probability, *lost]
 
 
-def trial_pages(replay: Replay, number: int, screen: Screen) -> Iterator[Page]:
-    """Yield one step of a trial, a page for each frame; the last one when it has been judged.
+def trial_frames(replay: Replay, number: int, *, braille: bool) -> Iterator[Frame]:
+    """Yield one step of a trial, frame by frame; the last one when it has been judged.
 
     Args:
         replay: the trial.
         number: of the step, counting from 1.
-        screen: draws the pages.
+        braille: the terminal can show braille letters.
     """
-    one = replay.steps[number - 1]
+    one, workspace = replay.steps[number - 1], replay.workspace
     behavior = str(one.step.record.row.exploratory)
     title, (why, outcome) = step_title(replay, number), step_words(replay, one)
-    path: tuple[Point, ...] = ()
-    for done in replay.steps[: number - 1]:
-        path = reduce(_farther, done.scenes, path)
+    path = [s.attractor.point for done in replay.steps[:number] for s in done.scenes]
+    began = len(path) - len(one.scenes)
     for frame, scene in enumerate(one.scenes):
-        path = _farther(path, scene)
-        phase = CHOOSING if frame == 0 else PLACING if frame < one.placed else EXPLORING
-        yield screen.page(title, phase_line(phase, behavior), scene, path, why)
+        phase = phase_line(0 if frame == 0 else 1 if frame < one.placed else 2, behavior)
+        so_far = path[: began + frame + 1]
+        yield Frame(title, phase, scene, so_far, why, workspace, braille)
     words = [*why, *outcome]
-    yield screen.page(title, phase_line(COMPARING, behavior), one.scenes[-1], path, words)
+    yield Frame(title, phase_line(3, behavior), one.scenes[-1], path, words, workspace, braille)
 
 
-def opening_page(replay: Replay, screen: Screen) -> Page:
+def opening_frame(replay: Replay, *, braille: bool) -> Frame:
     """Return the table of a trial that has no steps."""
     title = f"Trial {replay.trial_id}, no steps: {_which(replay.spec)}"
-    return screen.page(title, Text(), replay.opening, (), ())
+    return Frame(title, Text(), replay.opening, (), (), replay.workspace, braille)
 
 
-def _farther(path: tuple[Point, ...], scene: Scene) -> tuple[Point, ...]:
-    """Return where the attractor has been, with where it is now if it has moved."""
-    place = scene.attractor.point
-    return path if path[-1:] == (place,) else (*path, place)
-
-
-def behavior_pages(run: str, behavior: ReplayedBehavior, screen: Screen) -> Iterator[Page]:
-    """Yield one behavior of a learning run, a page for each frame.
+def behavior_frames(
+    run: str, behavior: ReplayedBehavior, workspace: Workspace, *, braille: bool
+) -> Iterator[Frame]:
+    """Yield one behavior of a learning run, frame by frame.
 
     Args:
         run: which, for the title.
         behavior: what was done.
-        screen: draws the pages.
+        workspace: where.
+        braille: the terminal can show braille letters.
     """
     title = f"{run}: behavior {behavior.record.step}"
     words = behavior_words(behavior)
-    path: tuple[Point, ...] = ()
-    for scene in behavior.scenes:
-        path = _farther(path, scene)
-        yield screen.page(title, Text(), scene, path, words)
+    path = [scene.attractor.point for scene in behavior.scenes]
+    for number, scene in enumerate(behavior.scenes, 1):
+        yield Frame(title, Text(), scene, path[:number], words, workspace, braille)
 
 
 def closing_words(replay: Replay) -> str:

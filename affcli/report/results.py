@@ -32,12 +32,12 @@ class Beside:
     """Successes beside the paper's.
 
     Args:
-        paper: the paper's count.
+        paper: the paper's count; None where the paper has none.
         counts: ours, one a robot; none when nothing was tried.
         tried: out of how many.
     """
 
-    paper: int
+    paper: int | None
     counts: Sequence[int]
     tried: int
 
@@ -54,7 +54,9 @@ class Beside:
     @property
     def outside(self) -> bool:
         """The paper's count does not lie in the central 95 % of robots."""
-        return self.spread is not None and not self.spread.holds(self.paper)
+        if self.spread is None or self.paper is None:
+            return False
+        return not self.spread.holds(self.paper)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,6 @@
 """The table as a picture made of letters: braille dots, or plain letters where there are none."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from typing import NamedTuple
@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 from rich.style import Style
 from rich.text import Text
 
-from affcli.core.geometry import ConvexPolygon, Point
+from affcli.core.geometry import ConvexPolygon, Point, Pose
 from affcli.core.scene import Scene
 from affcli.core.workspace import Workspace
 
 Coordinates = NDArray[np.float64]
-Inside = Callable[[Coordinates, Coordinates], NDArray[np.bool_]]
-"""Tells for the middle of each dot, x and y in inches, whether a thing covers it."""
+Dots = NDArray[np.bool_]
+"""Which dots a thing covers."""
 
 DOTS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]])
 """Bits of a braille letter by row and column of its dots (Unicode, block 2800)."""
@@ -79,7 +79,7 @@ class View:
         across, down = np.meshgrid(x, y)
         return across, down
 
-    def dots_at(self, places: Sequence[Point]) -> NDArray[np.bool_]:
+    def dots_at(self, places: Sequence[Point]) -> Dots:
         """Return which dots have one of the places (in) in them, (rows * 4, columns * 2)."""
         dots = np.zeros((self.rows * DOWN, self.columns * ACROSS), bool)
         x, y = np.array(places, float).reshape(-1, 2).T
@@ -103,18 +103,17 @@ def table_map(
         braille: with braille letters, eight dots each; without, one letter for each thing.
     """
     x, y = view.places()
-    layers: list[tuple[Layer, NDArray[np.bool_]]] = []
-    table = workspace.table
-    line = 0.6 * view.inches
-    edge = _frame(-table.half_width, table.near, table.half_width, table.far, line)
-    layers.append((EDGE, edge(x, y)))
+    table, line = workspace.table, 0.6 * view.inches
+    edge = _frame(x, y, (-table.half_width, table.near, table.half_width, table.far), line)
+    layers = [(EDGE, edge)]
     if scene.goal is not None:
         (gx, gy), half = scene.goal.center, scene.goal.half_width
-        layers.append((GOAL, _frame(gx - half, gy - half, gx + half, gy + half, line)(x, y)))
+        goal = _frame(x, y, (gx - half, gy - half, gx + half, gy + half), line)
+        layers.append((GOAL, goal))
     layers.append((PATH, view.dots_at(path)))
-    held = np.zeros(x.shape, bool)
-    for part in scene.tool.outlines:
-        held |= _polygon(part, scene.wrist, view.inches)(x, y)
+    wrist = Pose(*scene.wrist, 0.0)
+    parts = [_polygon(x, y, part.placed(wrist), view.inches) for part in scene.tool.outlines]
+    held = np.logical_or.reduce(parts)
     if scene.lift > 0.0:
         # A tool in the air hides nothing: every other dot.
         rows, columns = np.indices(x.shape)
@@ -127,7 +126,7 @@ def table_map(
     return _letters(layers, view, braille=braille)
 
 
-def _letters(layers: list[tuple[Layer, NDArray[np.bool_]]], view: View, *, braille: bool) -> Text:
+def _letters(layers: list[tuple[Layer, Dots]], view: View, *, braille: bool) -> Text:
     """Return the letters of all cells, each in the style of the uppermost thing in it."""
     shape = (view.rows, DOWN, view.columns, ACROSS)
     bits = np.zeros((view.rows, view.columns), int)
@@ -149,26 +148,21 @@ def _letters(layers: list[tuple[Layer, NDArray[np.bool_]]], view: View, *, brail
     return text
 
 
-def _frame(left: float, bottom: float, right: float, top: float, line: float) -> Inside:
-    """Return what tells the outline of a box."""
+def _frame(
+    x: Coordinates, y: Coordinates, box: tuple[float, float, float, float], line: float
+) -> Dots:
+    """Return the dots on the outline of a box: left, bottom, right and top."""
+    left, bottom, right, top = box
+    dx = np.abs(x - 0.5 * (left + right)) - 0.5 * (right - left)
+    dy = np.abs(y - 0.5 * (bottom + top)) - 0.5 * (top - bottom)
+    return np.abs(np.maximum(dx, dy)) < line
 
-    def inside(x: Coordinates, y: Coordinates) -> NDArray[np.bool_]:
-        dx = np.abs(x - 0.5 * (left + right)) - 0.5 * (right - left)
-        dy = np.abs(y - 0.5 * (bottom + top)) - 0.5 * (top - bottom)
-        return np.abs(np.maximum(dx, dy)) < line
 
-    return inside
-
-
-def _polygon(part: ConvexPolygon, at: Point, line: float) -> Inside:
-    """Return what tells a convex part of a tool, drawn no thinner than a dot."""
-
-    def inside(x: Coordinates, y: Coordinates) -> NDArray[np.bool_]:
-        within = np.ones(x.shape, bool)
-        for a, b in part.edges:
-            ex, ey = b.x - a.x, b.y - a.y
-            cross = ex * (y - at.y - a.y) - ey * (x - at.x - a.x)
-            within &= cross >= -0.5 * line * np.hypot(ex, ey)
-        return within
-
-    return inside
+def _polygon(x: Coordinates, y: Coordinates, part: ConvexPolygon, line: float) -> Dots:
+    """Return the dots of a convex part of a tool, drawn no thinner than a dot."""
+    within = np.ones(x.shape, bool)
+    for a, b in part.edges:
+        ex, ey = b.x - a.x, b.y - a.y
+        cross = ex * (y - a.y) - ey * (x - a.x)
+        within &= cross >= -0.5 * line * np.hypot(ex, ey)
+    return within

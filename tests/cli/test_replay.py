@@ -163,6 +163,10 @@ def test_away_from_a_terminal_nothing_is_wider_than_the_screen(columns: int, use
         out = done("replay", *what, "--db", used, COLUMNS=str(columns)).out
         assert max(map(cell_len, out.splitlines())) <= columns
         assert "…" not in out
+        if columns >= 40:
+            wide = done("replay", *what, "--db", used, COLUMNS="200").out
+            words = {word for word in wide.split() if word.isascii()}
+            assert words <= set(out.split()), "a word is broken"
 
 
 def interrupted(database: Path, steps: int) -> int:

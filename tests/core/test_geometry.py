@@ -4,6 +4,7 @@ import math
 
 import pytest
 import shapely
+import shapely.affinity
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
@@ -121,3 +122,22 @@ def test_every_direction_lies_from_0_up_to_360_degrees(dx: float, dy: float) -> 
 def test_a_pose_knows_its_point() -> None:
     assert Pose(1.0, 2.0, 3.0).point == Point(1.0, 2.0)
     assert Pose(1.0, 2.0).angle == 0.0
+
+
+@given(convex_polygons(), points, st.floats(-7.0, 7.0))
+def test_a_placed_polygon_is_turned_about_the_pose_as_shapely_turns_it(
+    polygon: ConvexPolygon, at: Point, angle: float
+) -> None:
+    placed = polygon.placed(Pose(*at, angle))
+    turned = shapely.affinity.rotate(
+        shapely.Polygon(polygon.vertices), angle, origin=(0.0, 0.0), use_radians=True
+    )
+    expected = shapely.affinity.translate(turned, *at).exterior.coords[:-1]
+    assert placed.vertices == tuple(pytest.approx(corner, abs=1e-9) for corner in expected)
+
+
+@given(convex_polygons(), points)
+def test_at_an_angle_of_zero_a_polygon_is_moved_to_the_bit(
+    polygon: ConvexPolygon, at: Point
+) -> None:
+    assert repr(polygon.placed(Pose(*at, 0.0))) == repr(polygon.moved(*at))

@@ -38,7 +38,10 @@ def test_a_film_has_the_steps_as_they_are_stored(store: Store, run: LearningRunI
         assert [s.number for s in film.steps] == list(range(1, (info.steps or 0) + 1))
         for shown, step in zip(film.steps, stored, strict=True):
             assert (shown.puck_start, shown.puck_end) == (step.true_start, step.true_end)
-            assert (shown.wrist_start, shown.wrist_end) == (step.wrist_start, step.wrist_end)
+            assert (shown.wrist_start.point, shown.wrist_end.point) == (
+                step.wrist_start,
+                step.wrist_end,
+            )
             assert (shown.expected, shown.seen) == (step.expected, step.seen)
             assert (shown.row, shown.behavior) == (step.affordance_id, str(step.row.exploratory))
             assert shown.excluded == step.died

@@ -1,10 +1,10 @@
 """Film strips of trials made by hand."""
 
-from affcli.core.geometry import Point
+from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Movement
 from affcli.core.task import GoalRegion
 from affcli.core.tool import ToolName, paper_tools
-from affcli.core.workspace import ToolGeometry
+from affcli.core.workspace import TableSurface, ToolGeometry
 from affcli.report.film import FilmedStep, FilmedTrial
 from tests.factories import moved_by
 
@@ -28,7 +28,7 @@ def filmed_step(
     successful: int = 2,
 ) -> FilmedStep:
     """Return a step in which the wrist slid 2 in to the left; it replicated if the puck did too."""
-    wrist = Point(at.x - 2.0, at.y - 10.0)
+    wrist = Pose(at.x - 2.0, at.y - 10.0)
     there = Point(at.x + moved[0], at.y + moved[1])
     still = moved == (0.0, 0.0)
     return FilmedStep(
@@ -36,7 +36,7 @@ def filmed_step(
         behavior=behavior,
         row=row,
         wrist_start=wrist,
-        wrist_end=wrist if blocked else Point(wrist.x - 2.0, wrist.y),
+        wrist_end=wrist if blocked else Pose(wrist.x - 2.0, wrist.y),
         puck_start=at,
         puck_end=there,
         expected=expected,
@@ -70,9 +70,9 @@ def filmed_trial(
         parts=held.parts,
         missing=believed.parts_missing_in(held),
         goal=GoalRegion(3, Point(-12.4, 22.4), 2.25),
-        wrist=Point(0.0, 15.0),
+        wrist=Pose(0.0, 15.0),
         puck=START,
         puck_radius=1.5,
-        table=(-16.0, 11.8, 16.0, 31.6),
+        table=TableSurface(),
         steps=steps,
     )

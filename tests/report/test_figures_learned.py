@@ -7,7 +7,7 @@ import sys
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,9 +22,9 @@ from affcli.core.tool import ToolName
 from affcli.report.fates import Fate, RowView
 from affcli.report.figures.affordances import affordances_figure
 from affcli.report.figures.canvas import FORMATS, ONE_COLUMN, encoded, style
-from affcli.report.figures.learning import MOST_CURVES, curves_figure
+from affcli.report.figures.learning import MOST_CURVES, bands_figure, curves_figure
 from affcli.report.figures.row import row_figure
-from affcli.report.figures.scale import round_length
+from affcli.report.figures.things import round_length
 from affcli.report.figures.tools import tools_figure
 from affcli.report.figures.workspace import workspace_figure
 from tests.factories import affordance
@@ -38,9 +38,6 @@ from tests.report.reading import (
     texts,
     written,
 )
-
-if TYPE_CHECKING:
-    pass
 
 ROOT = Path(__file__).parents[2]
 MISCHIEF = "$x_{^\\frac <script>[/]\x1b[31m" + "č机" * 9
@@ -58,7 +55,7 @@ def test_names_are_shown_as_they_are_and_never_as_formulas() -> None:
         assert shown
         for text in shown:
             assert "$x_{" in text.get_text()
-            assert text.get_text().isprintable()
+            assert text.get_text().replace("\n", " ").isprintable()
             assert not text.get_parse_math()
 
 
@@ -73,8 +70,8 @@ def test_a_row_says_what_the_robot_keeps_of_it(used: int, successful: int) -> No
         call=CALLS[3],
     )
     figure = row_figure(RowView(row, T_HOOK, 1.5))
-    said = texts(figure)
-    for words in ("Contract arm", "5 in", "Grasp, 1 in", "+ grasp point"):
+    said = "\n".join(texts(figure))
+    for words in ("Contract arm\n5 in", "Grasp, 1 in\n+ grasp point"):
         assert words in said
     assert "attractor (0.0, 22.4)" in said
     assert "attractor (0.0, 19.4)" in said
@@ -83,24 +80,22 @@ def test_a_row_says_what_the_robot_keeps_of_it(used: int, successful: int) -> No
     assert f"= {successful} / {used} = {successful / used:.2f}" in said
     assert ("excluded: not" in said) == (2 * successful <= used)
     assert "cut short: it met the" not in said
-    assert "cut short: it met the" in texts(
-        row_figure(RowView(replace(row, truncated=True), T_HOOK, 1.5))
-    )
+    cut_short = row_figure(RowView(replace(row, truncated=True), T_HOOK, 1.5))
+    assert "cut short: it met the" in "\n".join(texts(cut_short))
 
 
 def test_a_row_is_drawn_where_it_was_seen() -> None:
-    """Tool and attractor before (dashed) and after, and the movement between them."""
+    """Attractor before (dashed) and after, and the movement between, from where the wrist was."""
     row = drawn.table()[3]
     figure = row_figure(RowView(row, T_HOOK, 1.5))
     before, after = (axes for axes in figure.axes if circles(axes))
-    assert [circle.center for circle in circles(before)] == [row.start.object_position]
-    assert [circle.center for circle in circles(after)] == [
-        row.start.object_position,
-        row.end.object_position,
-    ]
+    began, moved = row.start.wrist_to_object, row.expected_movement
+    ended = (began.x + moved.dx, began.y + moved.dy)
+    assert [circle.center for circle in circles(before)] == [began]
+    assert [circle.center for circle in circles(after)] == [began, pytest.approx(ended)]
     ((start, end),) = arrows_in(after)
-    assert start == pytest.approx(row.start.object_position)
-    assert end == pytest.approx(row.end.object_position)
+    assert start == began
+    assert end == pytest.approx(ended)
     assert (outlines(before, dashed=True), outlines(after, dashed=True)) == (0, 5)
     assert (before.get_xlim(), before.get_ylim()) == (after.get_xlim(), after.get_ylim())
 
@@ -138,24 +133,23 @@ def test_an_arm_that_cannot_come_near_has_two_bounds() -> None:
 
 def test_every_part_of_the_tools_is_named_once_and_what_broke_off_is_dashed() -> None:
     figure = FIGURES["tools"]()
-    (axes,) = figure.axes
     said = texts(figure)
     for name in (*(part.name for part in T_HOOK.parts), "grasp point", "attractor", "lost"):
         assert said.count(name) == 1
     for name in ("Stick", "L-stick", "L-hook", "T-stick", "T-hook"):
         assert said.count(name) == 1
-    assert "T-hook that broke:\nthe shape of the L-hook" in said
-    parts = sum(len(tool.parts) for tool in TOOLS.values())
-    assert outlines(axes, dashed=False) == parts + len(L_HOOK.parts)
-    assert outlines(axes, dashed=True) == 2
-    assert axes.get_aspect() == 1.0
+    assert "T-hook that broke:\nthe shape of\nthe L-hook" in said
+    held = [*(len(tool.parts) for tool in TOOLS.values()), len(L_HOOK.parts)]
+    assert [outlines(axes, dashed=False) for axes in figure.axes] == [0, *held]
+    assert [outlines(axes, dashed=True) for axes in figure.axes] == [0] * 6 + [2]
+    assert len({(axes.get_xlim(), axes.get_ylim()) for axes in figure.axes}) == 1
 
 
 @pytest.mark.parametrize("left", ["stick", "l-stick", "t-stick", "l-hook"])
 def test_a_tool_can_break_in_several_ways(left: str) -> None:
     rest = TOOLS[ToolName(left)]
     figure = tools_figure(list(TOOLS.values()), (T_HOOK, rest), 1.5)
-    assert outlines(figure.axes[0], dashed=True) == len(T_HOOK.parts) - len(rest.parts)
+    assert outlines(figure.axes[-1], dashed=True) == len(T_HOOK.parts) - len(rest.parts)
 
 
 def test_no_two_curves_look_alike_in_grey() -> None:
@@ -193,6 +187,17 @@ def test_many_robots_are_a_column_a_tool_on_the_same_axes() -> None:
         top = max(tool.rows.high)
         assert axes.get_ylim()[1] >= top
     assert {"mean of 3 robots", "range of the robots"} <= set(texts(figure))
+
+
+def test_more_tools_than_a_row_holds_go_on_below() -> None:
+    many = [replace(drawn.bands()[0], tool=f"tool {n}") for n in range(7)]
+    figure = bands_figure(many)
+    titles = [axes.get_title() for axes in figure.axes if axes.get_title()]
+    assert titles == [f"Tool {n}" for n in range(7)]
+    assert len(figure.axes) == 14
+    tools = [replace(T_HOOK, name=ToolName(f"tool {n}")) for n in range(9)]
+    shown = texts(tools_figure(tools, (T_HOOK, L_HOOK), 1.5))
+    assert {f"Tool {n}" for n in range(9)} <= set(shown)
 
 
 @given(st.floats(1e-3, 1e6))

@@ -15,7 +15,14 @@ from affcli.report.figures.canvas import INK, SKY, TWO_COLUMNS, VERMILION, encod
 from affcli.report.figures.results import results_figure
 from affcli.report.paper import BROKEN_TOOL, EXTENSION_OF_REACH, TOTAL
 from affcli.report.reproduction import Reproduction
-from affcli.report.results import SingleRobots, papers_counts, results_of_many, results_of_single
+from affcli.report.results import (
+    Beside,
+    Results,
+    SingleRobots,
+    papers_counts,
+    results_of_many,
+    results_of_single,
+)
 from affcli.report.statistics import Spread
 from tests.report.hand_made import FOUR_ROBOTS, MANY_ROBOTS
 
@@ -86,8 +93,10 @@ def test_counts_of_the_paper_that_lie_outside_are_hollow() -> None:
     results = results_of_many(MANY_ROBOTS)
     figure = results_figure(results)
     for goal, axes in enumerate(figure.axes[:4], 1):
-        cells = [results.cells[tool, goal] for tool in EXTENSION_OF_REACH]
-        outside = [not Spread.of(cell.counts).holds(cell.paper) for cell in cells]
+        outside = [
+            not Spread.of(results.cells[tool, goal].counts).holds(counts[goal - 1])
+            for tool, counts in EXTENSION_OF_REACH.items()
+        ]
         diamonds = [line for line in axes.lines if line.get_marker() == "D"]
         assert [line.get_markerfacecolor() == "white" for line in diamonds] == outside
     assert "the paper, outside the central 95 %" in words_in(figure)
@@ -158,3 +167,23 @@ def test_where_not_all_starts_were_tried_it_says_how_many() -> None:
 def test_dollars_are_letters() -> None:
     strange: Reproduction = replace(MANY_ROBOTS, settings="$\\frac{1}{ = 0.45")
     assert encoded(results_figure(results_of_many(strange)), ".svg").startswith(b"<?xml")
+
+
+def test_any_number_of_goals_and_tools_stands_in_rows_that_fit() -> None:
+    """Of what the paper does not have, our counts stand alone."""
+    cells = {
+        (f"tool {n}", goal): Beside(None if n == 6 else 3, [2, 3], 4)
+        for n in range(1, 7)
+        for goal in range(1, 10)
+        if (n, goal) != (6, 9)
+    }
+    figure = results_figure(Results("two robots", "", None, 2, cells, None, None))
+    panels = {axes.get_title(): axes for axes in figure.axes}
+    assert set(panels) == {*(f"goal {n}" for n in range(1, 10)), "all trials", "broken tool"}
+    for goal in range(1, 10):
+        axes = panels[f"goal {goal}"]
+        assert len(axes.get_yticks()) == 6
+        assert len(marks(axes, VERMILION, "D")) == 5
+    figure.draw_without_rendering()
+    boxes = [axes.get_window_extent() for axes in figure.axes]
+    assert all(box.width > 0.6 * figure.dpi < 1.2 * box.height for box in boxes[:-2])

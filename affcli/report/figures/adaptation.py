@@ -11,7 +11,8 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator, PercentFormatter
 
 from affcli.report.adaptation import AdaptationCourse, MeanProbability, Share
-from affcli.report.figures.canvas import BLUE, FAINT, ONE_COLUMN, VERMILION, canvas
+from affcli.report.figures.canvas import BLUE, FAINT, ONE_COLUMN, VERMILION, canvas, head
+from affcli.report.figures.key import draw_key
 
 HEIGHT = 3.9
 """Of the figure (in)."""
@@ -33,11 +34,8 @@ def adaptation_figure(course: AdaptationCourse) -> Figure:
         probability.set_xlabel("step of the trial")
         probability.set_xlim(-0.5, course.shares[-1].number + 0.5)
         probability.xaxis.set_major_locator(MaxNLocator(7, integer=True, steps=[1, 2, 5, 10]))
-        figure.legend(
-            handles=_legend_entries(course), loc="outside lower center", ncols=3, borderpad=0.2
-        )
-        words = f"{course.title}\n{course.note}" if course.note else course.title
-        figure.suptitle(words, x=0.012, ha="left", fontsize=7.0, parse_math=False)
+        draw_key(figure, _key(course))
+        head(figure, course.title, course.note)
     return figure
 
 
@@ -81,12 +79,12 @@ def _draw_band(axes: Axes, points: Iterable[Share | MeanProbability], color: str
         axes.fill_between(numbers, low, high, color=color, alpha=BAND, linewidth=0.0)
 
 
-def _legend_entries(course: AdaptationCourse) -> list[Artist]:
-    """Return a handle for each kind of thing that is drawn."""
-    entries: list[Artist] = [Line2D([], [], **BROKEN, label="broken tool")]
+def _key(course: AdaptationCourse) -> list[tuple[Artist, str]]:
+    """Return what stands for what, of all that is drawn."""
+    entries: list[tuple[Artist, str]] = [(Line2D([], [], **BROKEN), "broken tool")]
     if course.whole:
-        entries.append(Line2D([], [], **WHOLE, label=f"whole {course.tool}"))
+        entries.append((Line2D([], [], **WHOLE), f"whole {course.tool}"))
     if any(share.interval for share in course.shares):
-        band = Patch(color=VERMILION, alpha=BAND, linewidth=0.0, label="95 % interval")
-        entries.append(band)
+        band = Patch(color=VERMILION, alpha=BAND, linewidth=0.0)
+        entries.append((band, "95 % interval"))
     return entries

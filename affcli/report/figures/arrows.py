@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.legend_handler import HandlerBase
-from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 
 from affcli.core.geometry import Point
@@ -23,10 +22,10 @@ if TYPE_CHECKING:
 Arrow = tuple[Point, Point]
 """Start and end (in, the axes' frame)."""
 
-HEAD_ASPECT = 0.7
-"""Width of a head over its length."""
 LARGEST_HEAD = 0.55
 """A head is at most this share of its arrow."""
+THINNEST = 0.8
+"""The line of a short arrow is no thinner than this (points), if it is not thin anyway."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +37,7 @@ class Look:
         dashes: on and off in points; none for a solid line.
         hollow: the head is an outline.
         width: of the line (points).
+        broad: width of a head over its length.
         level: arrows of a higher level lie over those of a lower.
     """
 
@@ -45,6 +45,7 @@ class Look:
     dashes: tuple[float, ...] = ()
     hollow: bool = False
     width: float = 0.8
+    broad: float = 0.7
     level: float = 5.0
 
     @property
@@ -69,20 +70,18 @@ def draw_arrows(axes: "Axes", arrows: Sequence[Arrow], look: Look, head: float) 
         axes: where.
         arrows: from where to where.
         look: how.
-        head: length of a head (in); shorter where the arrow is short.
+        head: length of a head (in); shorter, and the line thinner, where the arrow is short.
     """
     if not arrows:
         return
-    shafts, heads = [], []
-    for start, end in arrows:
-        shaft, tip = _parts(start, end, head)
-        shafts.append(shaft)
-        heads.append(tip)
+    sizes = [min(head, LARGEST_HEAD * math.dist(*arrow)) for arrow in arrows]
+    drawn = [_parts(arrow, size, look.broad) for arrow, size in zip(arrows, sizes, strict=True)]
+    shafts, heads = zip(*drawn, strict=True)
     axes.add_collection(
         LineCollection(
             shafts,
             colors=look.color,
-            linewidths=look.width,
+            linewidths=[max(min(look.width, THINNEST), look.width * s / head) for s in sizes],
             linestyles=[look.line],
             capstyle="butt",
             zorder=look.level,
@@ -100,23 +99,16 @@ def draw_arrows(axes: "Axes", arrows: Sequence[Arrow], look: Look, head: float) 
         ),
         autolim=False,
     )
+    axes.update_datalim([end for arrow in arrows for end in arrow])
 
 
 class ArrowKey(HandlerBase):
-    """Draws an arrow in a legend, whatever artist it stands for.
-
-    Args:
-        look: of the arrow.
-    """
-
-    def __init__(self, look: Look) -> None:
-        super().__init__()
-        self._look = look
+    """Draws an arrow in a legend, for its look."""
 
     def create_artists(
         self,
         legend: "Legend",
-        orig_handle: "Artist",
+        orig_handle: Any,
         xdescent: float,
         ydescent: float,
         width: float,
@@ -125,17 +117,17 @@ class ArrowKey(HandlerBase):
         trans: "Transform",
     ) -> Sequence["Artist"]:
         """Return the line and the head, in the legend's own frame."""
-        del legend, orig_handle, fontsize
-        look = self._look
+        del legend, fontsize
+        look: Look = orig_handle
         middle = 0.5 * height - ydescent
-        shaft, tip = _parts(Point(-xdescent, middle), Point(width - xdescent, middle), 5.0)
-        line = Line2D(
-            *zip(*shaft, strict=True),
-            color=look.color,
-            linewidth=look.width,
-            linestyle=look.line,
-            dash_capstyle="butt",
-            solid_capstyle="butt",
+        ends = Point(-xdescent, middle), Point(width - xdescent, middle)
+        shaft, tip = _parts(ends, max(5.0, 2.8 * look.width), look.broad)
+        line = LineCollection(
+            [shaft],
+            colors=look.color,
+            linewidths=look.width,
+            linestyles=[look.line],
+            capstyle="butt",
             transform=trans,
         )
         face = "white" if look.hollow else look.color
@@ -145,16 +137,13 @@ class ArrowKey(HandlerBase):
         return [line, pointed]
 
 
-def _parts(start: Point, end: Point, head: float) -> tuple[list[Point], list[Point]]:
+def _parts(arrow: Arrow, head: float, broad: float) -> tuple[list[Point], list[Point]]:
     """Return the line of an arrow, up to its head, and the three corners of the head."""
-    dx, dy = end.x - start.x, end.y - start.y
-    length = math.hypot(dx, dy)
-    if length == 0.0:
-        return [start, end], [end, end, end]
-    ux, uy = dx / length, dy / length
-    size = min(head, LARGEST_HEAD * length)
-    side = 0.5 * HEAD_ASPECT * size
-    neck = Point(end.x - size * ux, end.y - size * uy)
-    corners = [end, Point(neck.x - side * uy, neck.y + side * ux)]
-    corners.append(Point(neck.x + side * uy, neck.y - side * ux))
-    return [start, neck], corners
+    start, end = arrow
+    length = math.dist(start, end) or 1.0
+    ux, uy = (end.x - start.x) / length, (end.y - start.y) / length
+    side = 0.5 * broad * head
+    neck = Point(end.x - head * ux, end.y - head * uy)
+    left = Point(neck.x - side * uy, neck.y + side * ux)
+    right = Point(neck.x + side * uy, neck.y - side * ux)
+    return [start, neck], [end, left, right]

@@ -1,9 +1,10 @@
 """What all figures share: fonts, colours, sizes, and how one becomes a file's bytes."""
 
 import io
+import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import matplotlib as mpl
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -11,9 +12,6 @@ from matplotlib.figure import Figure
 from matplotlib.typing import RcKeyType
 
 from affcli.errors import BadInputError
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 ONE_COLUMN, TWO_COLUMNS = 3.4, 7.1
 """Widths of figures in a two-column journal (in)."""
@@ -25,6 +23,11 @@ BLUE, ORANGE, GREEN, VERMILION, PURPLE, SKY = (
 INK, FAINT, PALE = "#222222", "#8c8c8c", "#e8e8e8"
 WOOD = "#d9d2c5"
 """A tool under arrows: light enough that all of them stand out on it, also in grey."""
+
+HEAD_SIZE = 7.0
+"""Of the letters over a figure (points)."""
+LETTER = 0.58
+"""How wide a letter is on average, over its size."""
 
 STYLE: dict[RcKeyType, Any] = {
     "font.family": "DejaVu Sans",  # comes with matplotlib: the same everywhere
@@ -47,8 +50,12 @@ STYLE: dict[RcKeyType, Any] = {
     "axes.spines.top": False,
     "axes.spines.right": False,
     "legend.frameon": False,
+    "text.parse_math": False,  # a $ in a name is a $
     "lines.linewidth": 1.0,
     "hatch.linewidth": 0.5,
+    "figure.constrained_layout.use": True,
+    "figure.constrained_layout.w_pad": 0.03,
+    "figure.constrained_layout.h_pad": 0.03,
     "savefig.dpi": 300,
     "figure.dpi": 100,
     "pdf.fonttype": 42,  # whole fonts in the file, as journals ask
@@ -77,14 +84,14 @@ def style() -> Iterator[None]:
 
 
 @contextmanager
-def canvas(width: float, height: float) -> Iterator[Figure]:
+def canvas(width: float, height: float = 4.0) -> Iterator[Figure]:
     """Give an empty figure in affcli's style; draw on it inside the ``with`` block.
 
     Args:
-        width, height: in inches.
+        width, height: in inches; maps change the height (`affcli.report.figures.maps.fit_maps`).
     """
     with style():
-        figure = Figure(figsize=(width, height), layout="constrained")
+        figure = Figure(figsize=(width, height))
         FigureCanvasAgg(figure)
         yield figure
 
@@ -108,8 +115,9 @@ def encoded(figure: Figure, ending: str) -> bytes:
     return page.getvalue()
 
 
-def as_map(axes: "Axes", *, labels: tuple[str, str] = ("x (in)", "y (in)")) -> None:
-    """Make axes a map: inches of the same length in both directions."""
-    axes.set_aspect("equal", adjustable="box")
-    axes.set_xlabel(labels[0])
-    axes.set_ylabel(labels[1])
+def head(figure: Figure, *lines: str) -> None:
+    """Write lines over a figure, from its left edge; what is too long for one goes on below."""
+    width = figure.get_figwidth()
+    letters = int(72.0 * width / (LETTER * HEAD_SIZE))
+    words = "\n".join(textwrap.fill(line, letters) for line in lines if line)
+    figure.suptitle(words, x=0.03 / width, ha="left", fontsize=HEAD_SIZE)

@@ -6,17 +6,17 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PolyCollection
-from matplotlib.patches import Circle, Rectangle
+from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
-from affcli.core.geometry import Point
+from affcli.core.geometry import Point, Pose
 from affcli.core.replay import Replay, ReplayedStep
 from affcli.core.scene import Scene
 from affcli.core.task import GoalRegion
 from affcli.core.tool import Color
 from affcli.core.workspace import Workspace
 from affcli.report.figures.canvas import FAINT, INK, ORANGE, canvas
-from affcli.report.figures.things import draw_goal
+from affcli.report.figures.things import draw_goal, draw_table
 from affcli.report.replaying import step_title
 
 Picture = NDArray[np.uint8]
@@ -44,12 +44,7 @@ class Film:
             axes.set_xlim(-table.half_width - 1.0, table.half_width + 1.0)
             axes.set_ylim(min(table.near, 4.0) - 1.0, table.far + 0.5)
             axes.axis("off")
-            corner, width, height = (
-                (-table.half_width, table.near),
-                2.0 * table.half_width,
-                table.far - table.near,
-            )
-            axes.add_patch(Rectangle(corner, width, height, facecolor="#f7f5f0", edgecolor=FAINT))
+            draw_table(axes, table, fill="#f7f5f0", edge=FAINT)
             if goal is not None:
                 draw_goal(axes, goal, f"G{goal.number}")
             (self._path,) = axes.plot([], [], color=ORANGE, linewidth=0.9, zorder=2)
@@ -59,8 +54,8 @@ class Film:
             axes.add_patch(self._puck)
             (self._mark,) = axes.plot([], [], color=INK, linewidth=0.8, zorder=3)
             (self._wrist,) = axes.plot([], [], "+", color=INK, markersize=7, zorder=5)
-            self._title = figure.text(0.03, 0.955, "", parse_math=False, weight="bold")
-            self._line = figure.text(0.03, 0.91, "", parse_math=False)
+            self._title = figure.text(0.03, 0.955, "", weight="bold")
+            self._line = figure.text(0.03, 0.91, "")
             self._words = (self._title, self._line)
             self._moving = (self._path, self._tool, self._puck, self._mark, self._wrist)
             for artist in (*self._moving, *self._words):
@@ -81,11 +76,9 @@ class Film:
             path: where the attractor has been (in, table frame).
             title, line: written above.
         """
-        wrist, puck, color = scene.wrist, scene.attractor, scene.tool.color
+        wrist, puck, color = Pose(*scene.wrist, 0.0), scene.attractor, scene.tool.color
         self._path.set_data([p.x for p in path], [p.y for p in path])
-        self._tool.set_verts(
-            [[(x + wrist.x, y + wrist.y) for x, y in part.vertices] for part in scene.tool.outlines]
-        )
+        self._tool.set_verts([part.placed(wrist).vertices for part in scene.tool.outlines])
         self._tool.set_facecolor(_color(color))
         self._tool.set_alpha(LIFTED if scene.lift > 0.0 else 1.0)
         self._puck.set_center(puck.point)

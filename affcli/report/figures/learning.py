@@ -1,5 +1,6 @@
 """How learning went: rows made, and the share of behaviors with an effect, over robot time."""
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +19,9 @@ from affcli.report.figures.canvas import (
     VERMILION,
     canvas,
 )
-from affcli.report.figures.words import literal, shown, tool_words
+from affcli.report.figures.key import draw_key
+from affcli.report.figures.maps import columns_for
+from affcli.report.figures.words import shown, tool_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,6 +39,8 @@ COLORS = (BLUE, VERMILION, GREEN, PURPLE, INK, SKY)
 MARKERS = ("", "o")
 MOST_CURVES = len(COLORS) * len(MARKERS)
 """More than these nobody tells apart."""
+MOST_BESIDE = 5
+"""Tools in a row of the page."""
 WHOLE_RANGE = 39
 """Of so many robots or fewer the central 95 % is all of them."""
 NAMES = ("rows made", "share of behaviors\nwith an effect so far")
@@ -51,7 +56,6 @@ def curves_figure(curves: Sequence[Curve]) -> "Figure":
     """
     down = -(-len(curves) // 2)
     with canvas(ONE_COLUMN, 2.9 + 0.14 * down) as figure:
-        figure.set_layout_engine("constrained", w_pad=0.02, h_pad=0.03)
         above, below = figure.subplots(2, 1, sharex=True)
         lines = []
         for number, curve in enumerate(curves):
@@ -61,43 +65,41 @@ def curves_figure(curves: Sequence[Curve]) -> "Figure":
         _finish(above, below)
         above.set_ylabel(NAMES[0])
         below.set_ylabel(NAMES[1])
-        legend = figure.legend(
-            lines,
-            [shown(curve.name) for curve in curves],
-            loc="outside upper center",
-            ncols=2,
-            handlelength=3.2,
-        )
-        for text in legend.get_texts():
-            text.set(**literal())
+        entries = [(line, shown(curve.name)) for line, curve in zip(lines, curves, strict=True)]
+        draw_key(figure, entries, "outside upper center")
     return figure
 
 
 def bands_figure(tools: Sequence[ToolCurves]) -> "Figure":
     """Return many robots' learning: a column a tool, mean and central 95 % of the robots."""
-    width = TWO_COLUMNS if len(tools) > 2 else ONE_COLUMN
-    with canvas(width, 3.0) as figure:
-        figure.set_layout_engine("constrained", w_pad=0.02, h_pad=0.03, wspace=0.0)
-        axes = figure.subplots(2, len(tools), sharex=True, sharey="row", squeeze=False)
-        for column, tool in zip(axes.T, tools, strict=True):
-            for one, band in zip(column, (tool.rows, tool.share), strict=True):
+    columns = columns_for(len(tools), MOST_BESIDE)
+    rows = 2 * math.ceil(len(tools) / columns)
+    robots = max(tool.robots for tool in tools)
+    spread = "range" if robots <= WHOLE_RANGE else "central 95 %"
+    with canvas(TWO_COLUMNS if columns > 2 else ONE_COLUMN, 0.3 + 1.35 * rows) as figure:
+        grid = figure.subplots(rows, columns, sharex=True, squeeze=False)
+        # The first of each two rows shows the rows made, the second the share of effects.
+        pairs = [pair for upper in range(0, rows, 2) for pair in grid[upper : upper + 2].T]
+        for number, (pair, tool) in enumerate(zip(pairs, tools, strict=False)):
+            for one, first, band in zip(pair, pairs[0], (tool.rows, tool.share), strict=True):
                 one.fill_between(
                     tool.minutes, band.low, band.high, facecolor=SHADE, edgecolor="none"
                 )
                 one.plot(tool.minutes, band.mean, color=BLUE, linewidth=1.1)
-            column[0].set_title(tool_words(tool.tool), **literal())
-        for column in axes.T:
-            _finish(*column)
-        for one, name in zip(axes[:, 0], NAMES, strict=True):
-            one.set_ylabel(name)
-        robots = max(tool.robots for tool in tools)
-        spread = "range" if robots <= WHOLE_RANGE else "central 95 %"
-        figure.legend(
-            [Line2D([], [], color=BLUE, linewidth=1.1), Patch(facecolor=SHADE)],
-            [f"mean of {robots} robots", f"{spread} of the robots"],
-            loc="outside lower center",
-            ncols=2,
-        )
+                one.tick_params(labelleft=number % columns == 0)
+                if one is not first:
+                    one.sharey(first)
+            pair[0].set_title(tool_words(tool.tool))
+            pair[1].tick_params(labelbottom=True)
+            if number % columns == 0:
+                for one, name in zip(pair, NAMES, strict=True):
+                    one.set_ylabel(name)
+        for axes in (one for pair in pairs[len(tools) :] for one in pair):
+            axes.remove()
+        for pair in pairs[: len(tools)]:
+            _finish(*pair)
+        mean = Line2D([], [], color=BLUE, linewidth=1.1), f"mean of {robots} robots"
+        draw_key(figure, [mean, (Patch(facecolor=SHADE), f"{spread} of the robots")])
     return figure
 
 

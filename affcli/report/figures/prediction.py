@@ -15,6 +15,7 @@ from affcli.report.figures.canvas import (
     VERMILION,
     canvas,
 )
+from affcli.report.figures.key import draw_key
 from affcli.report.prediction import PREDICTORS, Errors, Push, Score, scores
 from affcli.report.statistics import wilson
 
@@ -44,7 +45,8 @@ def prediction_figure(title: str, pushes: Sequence[Push]) -> Figure:
         moved = sum(push.moved for push in pushes)
         left.set_title(f"{title}: {len(pushes)} pushes, {moved} moved", loc="left")
         middle.set_title("of the hits; thick: median; thin: 95 % lie below", loc="left")
-        figure.legend(*middle.get_legend_handles_labels(), loc="outside upper right", ncols=3)
+        lines, words = middle.get_legend_handles_labels()
+        draw_key(figure, list(zip(lines, words, strict=True)))
     return figure
 
 

@@ -1,5 +1,6 @@
-"""Our results with the paper's counts: 20 cells, the total, the broken tool (§7.1, §7.2)."""
+"""Our results with the paper's counts: each cell, the total, the broken tool (§7.1, §7.2)."""
 
+import math
 from collections import Counter
 from collections.abc import Mapping
 from typing import Any
@@ -10,13 +11,15 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from affcli.core.task import GOAL_NUMBERS
-from affcli.report.figures.canvas import INK, PALE, SKY, TWO_COLUMNS, VERMILION, canvas
-from affcli.report.paper import EXTENSION_OF_REACH
+from affcli.report.figures.canvas import INK, PALE, SKY, TWO_COLUMNS, VERMILION, canvas, head
+from affcli.report.figures.key import draw_key
+from affcli.report.figures.maps import columns_for
 from affcli.report.results import STARTS, Beside, Results
 
-HEIGHT = 2.35
-"""Of the figure (in)."""
+MOST_BESIDE = 4
+"""Goals in a row of the page."""
+UNTRIED = Beside(None, [], 0)
+"""A cell of which nothing is known."""
 DOT = 0.02
 """What an interval of one count is made longer by on both sides, or nothing of it would be seen."""
 RAISED = 0.3
@@ -31,28 +34,27 @@ PAPER: dict[str, Any] = {
 
 def results_figure(results: Results) -> Figure:
     """Draw the results: a panel a goal with a row a tool; total and broken tool beside them."""
-    with canvas(TWO_COLUMNS, HEIGHT) as figure:
-        grid = figure.add_gridspec(2, 5, width_ratios=(1, 1, 1, 1, 1.15))
-        tools = list(EXTENSION_OF_REACH)
-        for goal in GOAL_NUMBERS:
-            axes = figure.add_subplot(grid[:, goal - 1])
-            rows = {tool: results.cells[tool, goal] for tool in tools}
-            _draw_rows(axes, rows)
+    goals = list(dict.fromkeys(goal for _, goal in results.cells))
+    tools = list(dict.fromkeys(tool for tool, _ in results.cells))
+    most = max(STARTS, *(cell.tried for cell in results.cells.values()))
+    across = columns_for(len(goals), MOST_BESIDE)
+    rows = math.ceil(len(goals) / across)
+    with canvas(TWO_COLUMNS, 0.85 + rows * (0.5 + 0.2 * len(tools))) as figure:
+        grid = figure.add_gridspec(2 * rows, across + 1)
+        for number, goal in enumerate(goals):
+            row, column = divmod(number, across)
+            axes = figure.add_subplot(grid[2 * row : 2 * row + 2, column])
+            _draw_rows(axes, {tool: results.cells.get((tool, goal), UNTRIED) for tool in tools})
             axes.set_title(f"goal {goal}")
-            axes.set_xlabel(f"successes of {STARTS}")
-            axes.set_xticks(range(STARTS + 1))
-            axes.set_xlim(-0.35, STARTS + 0.35)
-            if goal != GOAL_NUMBERS[0]:
-                axes.tick_params(labelleft=False)
-        for row, (name, beside) in enumerate(
-            (("all trials", results.total), ("broken tool", results.broken))
-        ):
-            _draw_sum(figure.add_subplot(grid[row, 4]), name, beside)
-        figure.legend(
-            handles=_legend_entries(results), loc="outside lower center", ncols=4, borderpad=0.2
-        )
-        words = f"{results.title}; {results.note}" if results.note else results.title
-        figure.suptitle(words, x=0.006, ha="left", fontsize=7.0, parse_math=False)
+            axes.set_xlabel(f"successes of {most}")
+            axes.xaxis.set_major_locator(MaxNLocator(5, integer=True))
+            axes.set_xlim(-0.35, most + 0.35)
+            axes.tick_params(labelleft=column == 0)
+        sums = (("all trials", results.total), ("broken tool", results.broken))
+        for row, (name, beside) in enumerate(sums):
+            _draw_sum(figure.add_subplot(grid[row, across]), name, beside)
+        draw_key(figure, _key(results))
+        head(figure, "; ".join(filter(None, (results.title, results.note))))
     return figure
 
 
@@ -81,8 +83,9 @@ def _draw_rows(axes: Axes, rows: Mapping[str, Beside]) -> None:
     axes.set_axisbelow(True)
     for y, beside in enumerate(rows.values()):
         _draw_ours(axes, y, beside)
-        fill = "white" if beside.outside else VERMILION
-        axes.plot([beside.paper], [y - RAISED], **PAPER, markerfacecolor=fill, zorder=5)
+        if beside.paper is not None:
+            fill = "white" if beside.outside else VERMILION
+            axes.plot([beside.paper], [y - RAISED], **PAPER, markerfacecolor=fill, zorder=5)
 
 
 def _draw_ours(axes: Axes, y: float, beside: Beside) -> None:
@@ -115,31 +118,28 @@ def _draw_ours(axes: Axes, y: float, beside: Beside) -> None:
 
 def _limits(beside: Beside) -> tuple[float, float]:
     """Return how far the axis of one row reaches: from below all that is drawn to all solved."""
-    low = min(*beside.counts, beside.paper)
+    low = min([*beside.counts, *([] if beside.paper is None else [beside.paper])])
     room = max(1.0, 0.1 * (beside.tried - low))
     return low - room, beside.tried + 0.4 * room
 
 
-def _legend_entries(results: Results) -> list[Artist]:
-    """Return a handle for each kind of mark that is drawn."""
+def _key(results: Results) -> list[tuple[Artist, str]]:
+    """Return what stands for what, of all that is drawn."""
     every = [*results.cells.values(), *(b for b in (results.total, results.broken) if b)]
-    entries: list[Artist] = [
-        Line2D([], [], **PAPER, markerfacecolor=VERMILION, label="the paper"),
+    entries: list[tuple[Artist, str]] = [
+        (Line2D([], [], **PAPER, markerfacecolor=VERMILION), "the paper")
     ]
     if any(beside.outside for beside in every):
-        label = "the paper, outside the central 95 %"
-        entries.append(Line2D([], [], **PAPER, markerfacecolor="white", label=label))
+        mark = Line2D([], [], **PAPER, markerfacecolor="white")
+        entries.append((mark, "the paper, outside the central 95 %"))
     if any(beside.spread for beside in every):
-        dot: dict[str, Any] = {"marker": "o", "color": INK, "linewidth": 0.8}
-        entries += [
-            Line2D([], [], **dot, markersize=2.6, label="mean with its 95 % interval"),
-            Line2D([], [], color=SKY, linewidth=5.0, label="central 95 % of robots"),
-        ]
+        mean = Line2D([], [], marker="o", markersize=2.6, color=INK, linewidth=0.8)
+        entries.append((mean, "mean with its 95 % interval"))
+        entries.append((Line2D([], [], color=SKY, linewidth=5.0), "central 95 % of robots"))
         return entries
-    dot = {"marker": "o", "linestyle": "none"}
+    dot: dict[str, Any] = {"marker": "o", "linestyle": "none"}
     if results.robots > 1:
-        label = "robots (area: how many)"
-        entries.append(Line2D([], [], **dot, markersize=6.0, color=SKY, label=label))
+        robots = Line2D([], [], **dot, markersize=6.0, color=SKY)
+        entries.append((robots, "robots (area: how many)"))
     label = "mean" if results.robots > 1 else "one robot"
-    entries.append(Line2D([], [], **dot, markersize=3.2, color=INK, label=label))
-    return entries
+    return [*entries, (Line2D([], [], **dot, markersize=3.2, color=INK), label)]

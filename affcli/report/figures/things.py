@@ -1,55 +1,55 @@
-"""Tools, pucks and arrows as figures draw them: to scale, in inches of the axes' own frame."""
+"""Tools, attractor, goals and table as figures draw them: to scale, in inches."""
 
+import math
 from collections.abc import Iterable
 
 from matplotlib.axes import Axes
-from matplotlib.patches import Circle, FancyArrowPatch, Polygon, Rectangle
+from matplotlib.patches import Circle, Polygon, Rectangle
 
-from affcli.core.geometry import Point
+from affcli.core.geometry import Point, Pose
 from affcli.core.task import GoalRegion
 from affcli.core.tool import ToolPart
+from affcli.core.workspace import TableSurface
 from affcli.report.figures.canvas import FAINT, INK, ORANGE, PALE, WOOD
 
 
 def draw_parts(
     axes: Axes,
     parts: Iterable[ToolPart],
-    at: Point = Point(0.0, 0.0),
+    wrist: Pose = Pose(0.0, 0.0),
     *,
     fill: str = WOOD,
     edge: str = FAINT,
     missing: bool = False,
-    alpha: float = 1.0,
 ) -> None:
-    """Draw parts of a tool with its grasp point at `at`.
+    """Draw parts of a tool that is held at the wrist.
 
     Args:
         axes: where.
         parts: in the tool frame (in).
-        at: the grasp point in the axes' frame (in).
+        wrist: in the axes' frame (in, rad).
         fill, edge: colours.
         missing: as what is gone: dashed outlines with nothing in them.
-        alpha: 0 to 1.
     """
     for part in parts:
-        outline = [(x + at.x, y + at.y) for x, y in part.outline.vertices]
         axes.add_patch(
             Polygon(
-                outline,
+                part.outline.placed(wrist).vertices,
                 closed=True,
                 facecolor="none" if missing else fill,
                 edgecolor=edge,
                 linestyle=(0, (3, 2)) if missing else "-",
                 linewidth=0.7,
-                alpha=alpha,
                 zorder=2,
             )
         )
 
 
-def draw_grasp(axes: Axes, at: Point = Point(0.0, 0.0)) -> None:
+def draw_grasp(axes: Axes, wrist: Pose = Pose(0.0, 0.0)) -> None:
     """Mark the grasp point, which is the wrist."""
-    axes.plot([at.x], [at.y], marker="+", markersize=5, markeredgewidth=0.9, color=INK, zorder=6)
+    axes.plot(
+        [wrist.x], [wrist.y], marker="+", markersize=5, markeredgewidth=0.9, color=INK, zorder=6
+    )
 
 
 def draw_puck(
@@ -70,9 +70,8 @@ def draw_puck(
 
 
 def draw_goal(axes: Axes, goal: GoalRegion, label: str = "") -> None:
-    """Draw a goal region, with a label in its corner."""
-    half = goal.half_width
-    x, y = goal.center
+    """Draw a goal region, with a label in its upper left corner."""
+    half, (x, y) = goal.half_width, goal.center
     axes.add_patch(
         Rectangle(
             (x - half, y - half),
@@ -84,30 +83,51 @@ def draw_goal(axes: Axes, goal: GoalRegion, label: str = "") -> None:
             zorder=1,
         )
     )
-    if label:
-        axes.text(x - half + 0.25, y + half - 0.25, label, ha="left", va="top", zorder=6)
+    axes.annotate(
+        label,
+        (x - half, y + half),
+        (1.2, -1.5),
+        textcoords="offset points",
+        ha="left",
+        va="top",
+        fontsize=6.2,
+        zorder=6,
+    )
 
 
-def draw_arrow(
-    axes: Axes,
-    start: Point,
-    end: Point,
-    *,
-    color: str = INK,
-    width: float = 0.8,
-    dashed: bool = False,
-) -> None:
-    """Draw a movement from `start` to `end`, in the axes' frame."""
-    axes.add_patch(
-        FancyArrowPatch(
-            start,
-            end,
-            arrowstyle="-|>,head_length=2.2,head_width=1.1",
-            shrinkA=0,
-            shrinkB=0,
-            linewidth=width,
-            linestyle=(0, (2.5, 1.5)) if dashed else "-",
-            color=color,
-            zorder=5,
+def draw_table(axes: Axes, table: TableSurface, fill: str = "none", edge: str = INK) -> None:
+    """Draw the table, which does not count as a thing that a figure must show all of."""
+    corner, width = (-table.half_width, table.near), 2 * table.half_width
+    axes.add_artist(
+        Rectangle(
+            corner,
+            width,
+            table.far - table.near,
+            facecolor=fill,
+            edgecolor=edge,
+            linewidth=0.8,
+            zorder=0,
         )
     )
+
+
+def draw_length(axes: Axes, middle: Point, length: float) -> None:
+    """Draw a bar of a length (in) with its middle at a place, and write the length over it."""
+    left, right = middle.x - 0.5 * length, middle.x + 0.5 * length
+    axes.plot([left, right], [middle.y, middle.y], color=INK, solid_capstyle="butt")
+    axes.annotate(
+        f"{length:g} in",
+        middle,
+        (0.0, 2.0),
+        textcoords="offset points",
+        ha="center",
+        va="bottom",
+        fontsize=6.5,
+    )
+
+
+def round_length(most: float) -> float:
+    """Return the longest of 1, 2, 5, 10, 20, 50, ... (and 0.5, 0.2, ...) up to `most`."""
+    # One power less: the logarithm of 999999.9999999999 is rounded up to 6.
+    power = 10.0 ** (math.floor(math.log10(most)) - 1)
+    return max(f * power for f in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if f * power <= most)

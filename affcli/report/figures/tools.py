@@ -1,46 +1,27 @@
 """The tools to scale, with the names of their parts, and one that broke (Figs. 1 and 9)."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from affcli.core.geometry import Point
 from affcli.core.tool import PUCK_COLOR, Color, Tool, ToolPart
 from affcli.report.figures.canvas import INK, TWO_COLUMNS, canvas
-from affcli.report.figures.scale import draw_length, round_length
-from affcli.report.figures.things import draw_parts, draw_puck
-from affcli.report.figures.words import literal, shown, tool_words
+from affcli.report.figures.maps import fit_maps, map_panels
+from affcli.report.figures.things import draw_length, draw_parts, draw_puck, round_length
+from affcli.report.figures.words import shown, tool_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-NARROWEST = 0.07
-"""A thing takes at least this share of the figure's width, for the words beside it."""
-GAP = 0.04
-"""Between two things, as a share of the figure's width."""
-WORDS = 0.17
-"""Height of a line of words (in of the page)."""
-HIGHEST = 6.0
-"""The figure is at most so high (in of the page)."""
-
-
-@dataclass(frozen=True, slots=True)
-class Thing:
-    """One thing of the row, with what it takes of the width.
-
-    Args:
-        name: what stands below it.
-        tool: what it is; None for the attractor.
-        lost: parts that broke off.
-        left, right: how far it goes to both sides of its middle line (in of the table).
-    """
-
-    name: str
-    tool: Tool | None
-    lost: tuple[ToolPart, ...]
-    left: float
-    right: float
+MOST_BESIDE = 7
+"""Things in a row of the page."""
+MARGIN = 0.8
+"""Around all that is drawn in a panel (in of the table)."""
+ASPECTS = 0.5, 2.5
+"""The height of a panel over its width lies between these."""
+SMALL = 6.0
+"""Size of the letters beside the parts (points)."""
 
 
 def tools_figure(tools: Sequence[Tool], broken: tuple[Tool, Tool], puck_radius: float) -> "Figure":
@@ -55,117 +36,60 @@ def tools_figure(tools: Sequence[Tool], broken: tuple[Tool, Tool], puck_radius: 
     """
     whole, left = broken
     lost = whole.parts_missing_in(left)
-    things = [Thing("attractor", None, (), puck_radius, puck_radius)]
-    things += [_thing(tool_words(tool.name), tool) for tool in tools]
-    things.append(
-        _thing(
-            f"{tool_words(whole.name)} that broke:\nthe shape of the {tool_words(left.name)}",
-            left.painted(whole.color),
-            lost,
-        )
-    )
-    scale = _scale(things)
-    ys = [y for thing in things for part in _parts(thing) for _, y in part.outline.vertices]
-    low, high = min(ys), max(ys)
-    height = min((high - low) / scale + 3.9 * WORDS, HIGHEST)
-    with canvas(TWO_COLUMNS, height) as figure:
-        figure.set_layout_engine("none")
-        axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-        axes.set_axis_off()
-        axes.set_aspect("equal", adjustable="box")
-        axes.set_xlim(0.0, TWO_COLUMNS * scale)
-        bottom = low - 2.5 * WORDS * scale
-        axes.set_ylim(bottom, bottom + height * scale)
-        _draw_things(axes, things, scale, low, puck_radius)
+    with canvas(TWO_COLUMNS) as figure:
+        count = len(tools) + 2
+        attractor, *panels, last = map_panels(figure, count, min(count, MOST_BESIDE), ("", ""))
+        _draw_attractor(attractor, puck_radius)
+        named: set[str] = set()
+        for axes, tool in zip(panels, tools, strict=True):
+            axes.set_xlabel(tool_words(tool.name))
+            draw_parts(axes, tool.parts, fill=_paint(tool.color), edge=INK)
+            _mark_grasp_point(axes, "" if named else "grasp point")
+            for part in (part for part in tool.parts if part.name not in named):
+                _name_part(axes, part, part.name)
+                named.add(part.name)
+        shape = tool_words(left.name)
+        last.set_xlabel(f"{tool_words(whole.name)} that broke:\nthe shape of\nthe {shape}")
+        draw_parts(last, left.parts, fill=_paint(whole.color), edge=INK)
+        draw_parts(last, lost, edge=INK, missing=True)
+        _mark_grasp_point(last, "")
+        _name_part(last, lost[-1], "lost")
+        things = [attractor, *panels, last]
+        for axes in things:
+            axes.spines[:].set_visible(False)
+            axes.tick_params(length=0.0, labelleft=False, labelbottom=False)
+        fit_maps(figure, things, room=MARGIN, aspects=ASPECTS)
     return figure
 
 
-def _draw_things(
-    axes: "Axes", things: Sequence[Thing], scale: float, low: float, puck_radius: float
-) -> None:
-    """Draw the things one beside the other, their grasp points on one line."""
-    named: set[str] = set()
-    at = 0.5 * GAP * TWO_COLUMNS * scale
-    for thing in things:
-        middle = at + thing.left
-        at += _width(thing, scale) + GAP * TWO_COLUMNS * scale
-        name_at = middle + 0.5 * (thing.right - thing.left)
-        below = low - 0.6 * WORDS * scale
-        axes.text(name_at, below, thing.name, ha="center", va="top", **literal())
-        if thing.tool is None:
-            at_rest = Point(middle, low + puck_radius)
-            draw_puck(axes, at_rest, puck_radius, color=_paint(PUCK_COLOR))
-            above = Point(middle, low + 2 * puck_radius + WORDS * scale)
-            draw_length(axes, above, round_length(NARROWEST * TWO_COLUMNS * scale), 1.0)
-            continue
-        place = Point(middle, 0.0)
-        draw_parts(axes, thing.tool.parts, place, fill=_paint(thing.tool.color), edge=INK)
-        draw_parts(axes, thing.lost, place, edge=INK, missing=True)
-        _draw_grasp_point(axes, place, "" if named else "grasp point", scale)
-        for part in thing.tool.parts:
-            if part.name not in named:
-                _name_part(axes, part, middle, scale, part.name)
-                named.add(part.name)
-        if thing.lost:
-            _name_part(axes, thing.lost[-1], middle, scale, "lost")
+def _draw_attractor(axes: "Axes", radius: float) -> None:
+    """Draw the attractor, and over it how long some inches are."""
+    axes.set_xlabel("attractor")
+    draw_puck(axes, Point(0.0, radius), radius, color=_paint(PUCK_COLOR))
+    draw_length(axes, Point(0.0, 3.0 * radius), round_length(4.0 * radius))
 
 
-def _draw_grasp_point(axes: "Axes", at: Point, name: str, scale: float) -> None:
+def _mark_grasp_point(axes: "Axes", name: str) -> None:
     """Mark where the tool is grasped, on a tool of any colour."""
-    axes.plot(
-        *([at.x], [at.y]),
-        marker="o",
-        markersize=3.0,
-        markerfacecolor="white",
-        markeredgecolor=INK,
-        markeredgewidth=0.6,
-        zorder=6,
+    axes.plot([0.0], [0.0], "o", markersize=3.0, color="white", markeredgecolor=INK, zorder=6)
+    axes.annotate(
+        name, (0.0, 0.0), (5.0, 0.0), textcoords="offset points", va="center", fontsize=SMALL
     )
-    x = at.x + 0.5 * WORDS * scale
-    axes.text(x, at.y, name, ha="left", va="center", fontsize=6.5)
 
 
-def _name_part(axes: "Axes", part: ToolPart, middle: float, scale: float, name: str) -> None:
+def _name_part(axes: "Axes", part: ToolPart, name: str) -> None:
     """Write the name of a part where there is room: above bars, below hooks, beside handles."""
     left, bottom, right, top = part.outline.bounds
-    x, y = middle + 0.5 * (left + right), 0.5 * (bottom + top)
-    ha, va = "center", "center"
+    place, away = (0.5 * (left + right), bottom), (0.0, -2.0)
+    ha, va = "center", "top"
     if left <= 0.0 <= right:
-        x, ha = middle + right + 0.3 * WORDS * scale, "left"
+        place, away = (right, 0.5 * (bottom + top)), (2.5, 0.0)
+        ha, va = "left", "center"
     elif right - left > top - bottom:
-        y, va = top + 0.25 * WORDS * scale, "bottom"
-    else:
-        y, va = bottom - 0.25 * WORDS * scale, "top"
-    axes.text(x, y, shown(name), ha=ha, va=va, fontsize=6.5, **literal())
-
-
-def _thing(name: str, tool: Tool, lost: tuple[ToolPart, ...] = ()) -> Thing:
-    """Return a tool as a thing of the row."""
-    xs = [x for part in (*tool.parts, *lost) for x, _ in part.outline.vertices]
-    return Thing(name, tool, lost, -min(xs), max(xs))
-
-
-def _parts(thing: Thing) -> tuple[ToolPart, ...]:
-    """Return all parts of a thing."""
-    return (*(thing.tool.parts if thing.tool else ()), *thing.lost)
-
-
-def _scale(things: Sequence[Thing]) -> float:
-    """Return the inches of the table to one of the page at which all things fit beside another."""
-    room = TWO_COLUMNS * (1.0 - GAP * len(things))
-    least = NARROWEST * TWO_COLUMNS
-    # The narrow ones take their least, so that the others must share what is left.
-    wide = [thing.left + thing.right for thing in things]
-    scale = sum(wide) / room
-    for _ in wide:
-        narrow = [w for w in wide if w / scale < least]
-        scale = sum(w for w in wide if w / scale >= least) / (room - least * len(narrow))
-    return scale
-
-
-def _width(thing: Thing, scale: float) -> float:
-    """Return how much of the width a thing takes (in of the table)."""
-    return max(thing.left + thing.right, NARROWEST * TWO_COLUMNS * scale)
+        place, away, va = (place[0], top), (0.0, 2.0), "bottom"
+    axes.annotate(
+        shown(name), place, away, textcoords="offset points", ha=ha, va=va, fontsize=SMALL
+    )
 
 
 def _paint(color: Color) -> str:

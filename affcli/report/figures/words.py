@@ -1,17 +1,12 @@
-"""Words in figures: what others wrote is shown as it is, never read as a formula."""
+"""Words in figures: names on one line, behaviors with their parameters and units."""
 
-from typing import Any
+import math
 
 from affcli.core.behavior import BehaviorCall
 from affcli.errors import one_line
 
 LONGEST = 40
 """Characters of a name that are shown."""
-
-
-def literal() -> dict[str, Any]:
-    """Return the keywords with which matplotlib draws a text as it is: a $ is a $."""
-    return {"parse_math": False}
 
 
 def shown(name: str) -> str:
@@ -32,10 +27,13 @@ def behavior_words(call: BehaviorCall) -> str:
 
 
 def parameter_words(call: BehaviorCall) -> str:
-    """Return a behavior's parameters: ``2 in``."""
-    return ", ".join(f"{value:g} in" for _, value in call.params)
+    """Return a behavior's parameters with their units: ``2 in``, or ``30 deg`` for an angle."""
+    return ", ".join(
+        f"{math.degrees(value):g} deg" if name.endswith("angle") else f"{value:g} in"
+        for name, value in call.params
+    )
 
 
 def call_words(call: BehaviorCall) -> str:
-    """Return a behavior with its distance as a title: ``Extend arm, 2 in``."""
+    """Return a behavior with its parameters as a title: ``Extend arm, 2 in``."""
     return ", ".join(filter(None, (behavior_words(call), parameter_words(call))))

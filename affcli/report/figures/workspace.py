@@ -3,13 +3,15 @@
 import math
 from typing import TYPE_CHECKING
 
-from matplotlib.patches import Arc, Circle, Rectangle
+from matplotlib.patches import Arc, Circle
 
+from affcli.core.geometry import Pose
 from affcli.core.task import goal_regions, start_positions
 from affcli.core.tool import Tool
 from affcli.core.workspace import Workspace
-from affcli.report.figures.canvas import FAINT, INK, ONE_COLUMN, ORANGE, as_map, canvas
-from affcli.report.figures.things import draw_goal, draw_grasp, draw_parts
+from affcli.report.figures.canvas import FAINT, INK, ONE_COLUMN, canvas
+from affcli.report.figures.maps import fit_maps, map_panels
+from affcli.report.figures.things import draw_goal, draw_grasp, draw_parts, draw_puck, draw_table
 from affcli.simulation.arm import Reach
 
 if TYPE_CHECKING:
@@ -20,8 +22,8 @@ MARGIN = 1.0
 """Room around all that is drawn (in of the table)."""
 BASE_RADIUS = 1.6
 """Of the circle that stands for the arm's base (in). Choice: a sign, not its size."""
-HIGHEST, LOWEST = 5.0, 2.0
-"""The figure's height lies between these (in of the page)."""
+ASPECTS = 0.5, 1.5
+"""The height of the map over its width lies between these."""
 
 
 def workspace_figure(workspace: Workspace, tool: Tool, reach: Reach) -> "Figure":
@@ -34,87 +36,23 @@ def workspace_figure(workspace: Workspace, tool: Tool, reach: Reach) -> "Figure"
         tool: which lies at the centre of the table.
         reach: of the wrist, without a tool.
     """
-    left, bottom, right, top = _bounds(workspace, tool, reach)
-    across = ONE_COLUMN - 0.45
-    height = min(max(across * (top - bottom) / (right - left) + 0.4, LOWEST), HIGHEST)
-    with canvas(ONE_COLUMN, height) as figure:
-        figure.set_layout_engine("constrained", w_pad=0.02, h_pad=0.02)
-        axes = figure.subplots()
-        _draw_table(axes, workspace)
+    table, wrist = workspace.table, Pose(*workspace.wrist_start, 0.0)
+    with canvas(ONE_COLUMN) as figure:
+        (axes,) = map_panels(figure, 1, 1)
+        draw_table(axes, table)
+        corners = [(-table.half_width, table.near), (table.half_width, table.far)]
+        axes.update_datalim(corners)
+        axes.text(table.half_width - 0.4, table.far - 0.4, "table", ha="right", va="top", zorder=6)
         for number, goal in goal_regions(workspace.layout).items():
-            draw_goal(axes, goal)
-            corner = (goal.center.x - goal.half_width, goal.center.y + goal.half_width)
-            axes.annotate(
-                f"G{number}",
-                corner,
-                xytext=(1.2, -1.5),
-                textcoords="offset points",
-                ha="left",
-                va="top",
-                fontsize=6.2,
-                zorder=6,
-            )
-        draw_parts(axes, tool.parts, workspace.wrist_start)
-        draw_grasp(axes, workspace.wrist_start)
-        _draw_starts(axes, workspace)
+            draw_goal(axes, goal, f"G{number}")
+        draw_parts(axes, tool.parts, wrist)
+        draw_grasp(axes, wrist)
+        for number, place in start_positions(workspace.layout).items():
+            draw_puck(axes, place, workspace.puck.radius)
+            axes.text(*place, str(number), ha="center", va="center", zorder=6)
         _draw_arm(axes, reach)
-        as_map(axes)
-        axes.set_xlim(left, right)
-        axes.set_ylim(bottom, top)
+        fit_maps(figure, [axes], room=MARGIN, aspects=ASPECTS)
     return figure
-
-
-def _bounds(workspace: Workspace, tool: Tool, reach: Reach) -> tuple[float, float, float, float]:
-    """Return left, bottom, right and top of what holds everything (in, table frame)."""
-    table, start = workspace.table, workspace.wrist_start
-    goals = goal_regions(workspace.layout).values()
-    points: list[tuple[float, float]] = [
-        (table.half_width, table.far),
-        (-table.half_width, table.near),
-        (reach.outer, reach.outer),
-        (-reach.outer, -BASE_RADIUS),
-        *((x + start.x, y + start.y) for outline in tool.outlines for x, y in outline.vertices),
-        *(
-            (goal.center.x + side * goal.half_width, goal.center.y + side * goal.half_width)
-            for goal in goals
-            for side in (-1, 1)
-        ),
-    ]
-    xs, ys = zip(*points, strict=True)
-    return min(xs) - MARGIN, min(ys) - MARGIN, max(xs) + MARGIN, max(ys) + MARGIN
-
-
-def _draw_table(axes: "Axes", workspace: Workspace) -> None:
-    """Draw the edge of the table."""
-    table = workspace.table
-    axes.add_patch(
-        Rectangle(
-            (-table.half_width, table.near),
-            2 * table.half_width,
-            table.far - table.near,
-            facecolor="none",
-            edgecolor=INK,
-            linewidth=1.0,
-            zorder=1.0,
-        )
-    )
-    axes.text(table.half_width - 0.4, table.far - 0.4, "table", ha="right", va="top", zorder=6)
-
-
-def _draw_starts(axes: "Axes", workspace: Workspace) -> None:
-    """Draw the attractor at each of its starts, with the number of the start."""
-    for number, place in start_positions(workspace.layout).items():
-        axes.add_patch(
-            Circle(
-                place,
-                workspace.puck.radius,
-                facecolor=ORANGE,
-                edgecolor=INK,
-                linewidth=0.7,
-                zorder=3,
-            )
-        )
-        axes.text(*place, str(number), ha="center", va="center", zorder=6)
 
 
 def _draw_arm(axes: "Axes", reach: Reach) -> None:
