@@ -34,6 +34,7 @@ from affcli.errors import UsageError, one_line
 from affcli.lab.drawing import require_figures
 from affcli.report import figures
 from affcli.simulation.arm import reach_at
+from affcli.simulation.tasks.extension_of_reach import extension_of_reach
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -153,7 +154,8 @@ def workspace(
     place = load_settings(config).workspace
     reach = reach_at(place.arm, place.arm.flange_height)
     lying = registry.tool(tool, place.tools)
-    figure = figures.workspace.workspace_figure(place, lying, reach)
+    tasks = extension_of_reach(place.layout)
+    figure = figures.workspace.workspace_figure(place, lying, reach, tasks)
     words = f"the bare arm reaches from {reach.inner:.1f} to {reach.outer:.1f} in"
     save_figure(out, figure, f"the table with the {tool}; {words}")
 

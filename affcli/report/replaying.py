@@ -13,8 +13,7 @@ from rich.text import Text
 from affcli.core.geometry import Point
 from affcli.core.replay import Difference, Replay, ReplayedBehavior, ReplayedStep
 from affcli.core.scene import Scene
-from affcli.core.task import goal_regions
-from affcli.core.trial import TrialSpec
+from affcli.core.specs import TrialSpec
 from affcli.core.workspace import Workspace
 from affcli.report.table_map import View, table_map
 from affcli.report.trials import movement_in_words, step_lines
@@ -99,7 +98,7 @@ def _which(spec: TrialSpec) -> str:
 def step_words(replay: Replay, step: ReplayedStep) -> tuple[list[str], list[str]]:
     """Return why a row was chosen in a step and which were next best; and what came of it."""
     chosen, *others = step.considered
-    *why, happened, probability = step_lines(step.step.record, step.goal)
+    *why, happened, probability = step_lines(step.step.record, replay.spec.task.goal)
     why = [f"row {chosen.id}: {chosen.row.exploratory}", "", *why]
     for other in others[:MOST_CLOSE]:
         why.append(
@@ -223,7 +222,6 @@ def replay_json(replay: Replay, numbers: Sequence[int]) -> dict[str, Any]:
         numbers: of the steps that are wanted; the differences are those of all.
     """
     spec = replay.spec
-    goal = goal_regions(replay.workspace.layout)[spec.goal]
     return {
         "trial": replay.trial_id,
         "run": replay.run_id,
@@ -231,7 +229,7 @@ def replay_json(replay: Replay, numbers: Sequence[int]) -> dict[str, Any]:
         "shape": spec.shape,
         "goal": spec.goal,
         "start": spec.start,
-        "goal_center": list(goal.center),
+        "goal_center": list(spec.task.goal.center),
         "outcome": None if replay.end is None else replay.end.outcome.value,
         "steps": [_step_json(replay.steps[number - 1]) for number in numbers],
         **differences_json(replay.differences),
@@ -245,7 +243,7 @@ def _step_json(one: ReplayedStep) -> dict[str, Any]:
         "step": record.number,
         "row": one.considered[0].id,
         "behavior": str(record.row.exploratory),
-        "rows_left": record.survivors._asdict(),
+        "reasons": [reason.as_json() for reason in record.reasons],
         "considered": [
             {
                 "row": each.id,
@@ -261,8 +259,8 @@ def _step_json(one: ReplayedStep) -> dict[str, Any]:
         "seen": [record.seen.dx, record.seen.dy],
         "replicated": record.replicated,
         "lost": one.step.lost,
-        "true_start": list(truth.start),
-        "true_end": list(truth.end),
+        "true_start": None if truth is None else list(truth.start),
+        "true_end": None if truth is None else list(truth.end),
         "frames": len(one.scenes),
     }
 

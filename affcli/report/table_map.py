@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from rich.style import Style
 from rich.text import Text
 
-from affcli.core.geometry import ConvexPolygon, Point, Pose
+from affcli.core.geometry import ConvexPolygon, Point
 from affcli.core.scene import Scene
 from affcli.core.workspace import Workspace
 
@@ -111,8 +111,8 @@ def table_map(
         goal = _frame(x, y, (gx - half, gy - half, gx + half, gy + half), line)
         layers.append((GOAL, goal))
     layers.append((PATH, view.dots_at(path)))
-    wrist = Pose(*scene.wrist, 0.0)
-    parts = [_polygon(x, y, part.placed(wrist), view.inches) for part in scene.tool.outlines]
+    placed = (part.placed(scene.wrist) for part in scene.tool.outlines)
+    parts = [_polygon(x, y, part, view.inches) for part in placed]
     held = np.logical_or.reduce(parts)
     if scene.lift > 0.0:
         # A tool in the air hides nothing: every other dot.

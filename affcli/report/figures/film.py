@@ -9,14 +9,14 @@ from matplotlib.collections import PolyCollection
 from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
-from affcli.core.geometry import Point, Pose
+from affcli.core.geometry import Point
 from affcli.core.replay import Replay, ReplayedStep
 from affcli.core.scene import Scene
 from affcli.core.task import GoalRegion
 from affcli.core.tool import Color
 from affcli.core.workspace import Workspace
 from affcli.report.figures.canvas import FAINT, INK, ORANGE, canvas
-from affcli.report.figures.things import draw_goal, draw_table
+from affcli.report.figures.things import draw_goal, draw_table, goal_label
 from affcli.report.replaying import step_title
 
 Picture = NDArray[np.uint8]
@@ -46,7 +46,7 @@ class Film:
             axes.axis("off")
             draw_table(axes, table, fill="#f7f5f0", edge=FAINT)
             if goal is not None:
-                draw_goal(axes, goal, f"G{goal.number}")
+                draw_goal(axes, goal, goal_label(goal.name))
             (self._path,) = axes.plot([], [], color=ORANGE, linewidth=0.9, zorder=2)
             self._tool = PolyCollection([], edgecolor=INK, linewidth=0.6, zorder=4)
             axes.add_collection(self._tool)
@@ -76,7 +76,7 @@ class Film:
             path: where the attractor has been (in, table frame).
             title, line: written above.
         """
-        wrist, puck, color = Pose(*scene.wrist, 0.0), scene.attractor, scene.tool.color
+        wrist, puck, color = scene.wrist, scene.attractor, scene.tool.color
         self._path.set_data([p.x for p in path], [p.y for p in path])
         self._tool.set_verts([part.placed(wrist).vertices for part in scene.tool.outlines])
         self._tool.set_facecolor(_color(color))

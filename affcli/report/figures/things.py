@@ -131,3 +131,8 @@ def round_length(most: float) -> float:
     # One power less: the logarithm of 999999.9999999999 is rounded up to 6.
     power = 10.0 ** (math.floor(math.log10(most)) - 1)
     return max(f * power for f in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if f * power <= most)
+
+
+def goal_label(name: str) -> str:
+    """Return what a goal is called in a figure: ``G1`` for the paper's goal 1, else its name."""
+    return f"G{name}" if name.isdecimal() else name

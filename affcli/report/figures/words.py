@@ -1,7 +1,5 @@
 """Words in figures: names on one line, behaviors with their parameters and units."""
 
-import math
-
 from affcli.core.behavior import BehaviorCall
 from affcli.errors import one_line
 
@@ -29,8 +27,7 @@ def behavior_words(call: BehaviorCall) -> str:
 def parameter_words(call: BehaviorCall) -> str:
     """Return a behavior's parameters with their units: ``2 in``, or ``30 deg`` for an angle."""
     return ", ".join(
-        f"{math.degrees(value):g} deg" if name.endswith("angle") else f"{value:g} in"
-        for name, value in call.params
+        f"{value:g} {'deg' if name.endswith('angle') else 'in'}" for name, value in call.params
     )
 
 

@@ -1,17 +1,25 @@
 """Where everything stands as a trial begins (Fig. 8)."""
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from matplotlib.patches import Arc, Circle
 
 from affcli.core.geometry import Pose
-from affcli.core.task import goal_regions, start_positions
+from affcli.core.task import Task
 from affcli.core.tool import Tool
 from affcli.core.workspace import Workspace
 from affcli.report.figures.canvas import FAINT, INK, ONE_COLUMN, canvas
 from affcli.report.figures.maps import fit_maps, map_panels
-from affcli.report.figures.things import draw_goal, draw_grasp, draw_parts, draw_puck, draw_table
+from affcli.report.figures.things import (
+    draw_goal,
+    draw_grasp,
+    draw_parts,
+    draw_puck,
+    draw_table,
+    goal_label,
+)
 from affcli.simulation.arm import Reach
 
 if TYPE_CHECKING:
@@ -26,7 +34,9 @@ ASPECTS = 0.5, 1.5
 """The height of the map over its width lies between these."""
 
 
-def workspace_figure(workspace: Workspace, tool: Tool, reach: Reach) -> "Figure":
+def workspace_figure(
+    workspace: Workspace, tool: Tool, reach: Reach, tasks: Sequence[Task]
+) -> "Figure":
     """Return the table from above: goals, starts, the tool at its start, the bare arm's reach.
 
     The arm of the default settings reaches to 0.04 in from its middle: only the outer bound shows.
@@ -35,21 +45,24 @@ def workspace_figure(workspace: Workspace, tool: Tool, reach: Reach) -> "Figure"
         workspace: the sizes.
         tool: which lies at the centre of the table.
         reach: of the wrist, without a tool.
+        tasks: whose goals and starts are drawn.
     """
-    table, wrist = workspace.table, Pose(*workspace.wrist_start, 0.0)
+    table, wrist = workspace.table, Pose(*workspace.wrist_start)
+    goals = {task.goal.name: task.goal for task in tasks}
+    starts = {task.start_name: task.start for task in tasks}
     with canvas(ONE_COLUMN) as figure:
         (axes,) = map_panels(figure, 1, 1)
         draw_table(axes, table)
         corners = [(-table.half_width, table.near), (table.half_width, table.far)]
         axes.update_datalim(corners)
         axes.text(table.half_width - 0.4, table.far - 0.4, "table", ha="right", va="top", zorder=6)
-        for number, goal in goal_regions(workspace.layout).items():
-            draw_goal(axes, goal, f"G{number}")
+        for name, goal in goals.items():
+            draw_goal(axes, goal, goal_label(name))
         draw_parts(axes, tool.parts, wrist)
         draw_grasp(axes, wrist)
-        for number, place in start_positions(workspace.layout).items():
+        for name, place in starts.items():
             draw_puck(axes, place, workspace.puck.radius)
-            axes.text(*place, str(number), ha="center", va="center", zorder=6)
+            axes.text(place.x, place.y, name, ha="center", va="center", zorder=6)
         _draw_arm(axes, reach)
         fit_maps(figure, [axes], room=MARGIN, aspects=ASPECTS)
     return figure
