@@ -4,17 +4,18 @@ from collections.abc import Iterable
 
 from hypothesis import strategies as st
 
+from affcli.behaviors.moving import EXTEND_ARM
 from affcli.config import Settings
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import AffordanceTable
-from affcli.core.behavior import EXTEND_ARM, GRASP, BehaviorCall
+from affcli.core.behavior import GRASP, BehaviorCall
 from affcli.core.geometry import Point
 from affcli.core.observation import Movement, Observation
+from affcli.core.specs import LearningSpec
 from affcli.core.task import GoalRegion
-from affcli.core.tool import PUCK_COLOR, TOOL_COLORS, Color, ToolName
-from affcli.core.trial import LearningSpec
-from affcli.lab.bench import LEARNING, Bench, tool_named
-from affcli.simulation.world import World
+from affcli.core.tool import PUCK_COLOR, Color, ToolName
+from affcli.lab.run_parts import RunParts
+from affcli.simulation.tools.paper import TOOL_COLORS
 
 TOOL_COLOR = TOOL_COLORS[ToolName("t-hook")]
 BINDING = BehaviorCall.of(GRASP, {"grasp_point": 1.0})
@@ -82,16 +83,7 @@ def table_of(*rows: Affordance) -> AffordanceTable:
 
 def goal_at(x: float, y: float, half_width: float = 2.0) -> GoalRegion:
     """Return a goal region with its centre at (x, y)."""
-    return GoalRegion(1, Point(x, y), half_width)
-
-
-def bench_with(tool: str, seed: int = 0, *words: int, settings: Settings | None = None) -> Bench:
-    """Return a robot at a table of its own, with a tool in its hand at the table's centre."""
-    settings = settings or Settings()
-    world = World(settings.workspace, settings.physics)
-    bench = Bench.of(settings, world, LEARNING, seed, 0, *words)
-    bench.world.tool = tool_named(settings, tool)
-    return bench
+    return GoalRegion("1", Point(x, y), half_width)
 
 
 def learning_spec(
@@ -105,4 +97,4 @@ def learning_spec(
 ) -> LearningSpec:
     """Return the spec of a short learning run; of a timed one when `hours` is given."""
     limit = None if hours is not None else behaviors
-    return LearningSpec(tool, seed, robot, hours, limit, (settings or Settings()).to_json())
+    return RunParts.chosen(settings or Settings()).spec(tool, seed, robot, hours, limit)

@@ -71,8 +71,15 @@ class Component:
         return f"{head}:{','.join(pairs)}" if pairs else head
 
     def canonical(self) -> dict[str, Any]:
-        """Return the component as JSON types, for the key of a spec."""
-        return {"name": self.name, "params": dict(self.params), "version": self.version}
+        """Return the component as JSON types, for the key of a spec.
+
+        A whole number is written without a fraction: 1 and 1.0 are equal, and so are their keys.
+        """
+        params = {
+            key: int(value) if isinstance(value, float) and value.is_integer() else value
+            for key, value in self.params
+        }
+        return {"name": self.name, "params": params, "version": self.version}
 
 
 def shown(value: Value) -> str:

@@ -12,13 +12,18 @@ from importlib import import_module
 from pathlib import Path
 
 from affcli.cli.signals import SignalHandler
+from affcli.core.behavior import GRASP, BehaviorCall
+from affcli.core.identity import Component
+from affcli.core.specs import SessionSpec
 from affcli.errors import DatabaseError
 from affcli.store import Store, open_store, run_sql, upgrade
 
 
 def write_something(store: Store) -> None:
     """Write, without importing what makes records: it takes longer than all that is tested."""
-    store.begin_session("solve", 0, 1, "{}", {}, "now")
+    table, grasp = Component("table"), BehaviorCall.of(GRASP, {"grasp_point": 1.0})
+    spec = SessionSpec("solve", 0, 1, table, (), grasp, table, table, "noisy", "{}", "none")
+    store.sessions.begin(spec, {}, "now")
 
 
 def ready() -> None:
@@ -71,19 +76,22 @@ def append_in_chunks(path: Path) -> None:
     with open_store(path, create=False, write=True) as store:
         ready()
         sys.stdin.readline()
-        info = store.begin_learning(LONG_RUN, VERSIONS, NOW)
+        info = store.learning.begin(LONG_RUN, VERSIONS, NOW)
         while info.status != "done":
             at = info.behaviors
             steps = learning_steps(4, first=at + 1)
             checkpoint = {"step": at + 4}
             done = at + 4 == 120
-            store.append_learning(info.id, at, steps, checkpoint, at, done=done, now=NOW)
-            info = store.begin_learning(LONG_RUN, VERSIONS, NOW)
+            store.learning.append(info.id, at, steps, checkpoint, at, done=done, now=NOW)
+            info = store.learning.begin(LONG_RUN, VERSIONS, NOW)
 
 
 def die_while_writing(path: Path) -> None:
     """Leave a hot journal: pages already in the file, no commit, killed."""
-    with open_store(path, create=False, write=True) as store, store.writing() as connection:
+    with (
+        open_store(path, create=False, write=True) as store,
+        store.database.writing() as connection,
+    ):
         connection.exec_driver_sql("PRAGMA cache_spill = 1")
         connection.exec_driver_sql("PRAGMA cache_size = 1")
         connection.exec_driver_sql(
@@ -115,7 +123,7 @@ def without_permission(path: Path) -> None:
 def reading(path: Path) -> str:
     """Read with the store."""
     with open_store(path, create=False, write=False) as store:
-        return f"{len(store.learning_runs())} run"
+        return f"{len(store.learning.runs())} run"
 
 
 def querying(path: Path) -> str:
@@ -141,7 +149,7 @@ def writing_anew(path: Path) -> str:
 def killed_while_migrating(path: Path) -> None:
     """Make the schema in one child after another, each killed at a later statement."""
     warm_up(path)
-    for statement in range(1, 60):
+    for statement in range(1, 150):
         status = killed_at(statement, path)
         driver = sqlite3.connect(path)
         tables = driver.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
@@ -155,7 +163,7 @@ def killed_while_migrating(path: Path) -> None:
 def killed_while_upgrading(path: Path) -> None:
     """Upgrade the database in one child after another, each killed at a later statement."""
     warm_up(path)
-    for statement in range(1, 90):
+    for statement in range(1, 150):
         status = killed_at(statement, path)
         driver = sqlite3.connect(path)
         whole = "\n".join(driver.iterdump())

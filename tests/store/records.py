@@ -8,31 +8,53 @@ from dataclasses import replace
 from affcli.core.affordance import Affordance
 from affcli.core.behavior import POSITION_WRIST, BehaviorCall, Execution, ExecutionStatus
 from affcli.core.change_detection import change_detected
+from affcli.core.choice import Reason
 from affcli.core.geometry import Point, Pose
+from affcli.core.identity import Component
 from affcli.core.observation import movement
-from affcli.core.trial import (
-    BabblingRecord,
+from affcli.core.records import LearningRunInfo
+from affcli.core.specs import (
     Counters,
     LearningSpec,
-    Outcome,
+    LearningStep,
     Protocol,
     RobotRecord,
-    StepRecord,
-    Survivors,
-    TrialEnd,
+    SessionSpec,
     TrialRecord,
     TrialSpec,
-    TrialStep,
-    Truth,
 )
-from affcli.store import LearningRunInfo, LearningStep, Store
+from affcli.core.task import GoalRegion, Task
+from affcli.core.trial import BabblingRecord, Outcome, StepRecord, TrialEnd, TrialStep, Truth
+from affcli.store import Store
 from tests.factories import BINDING, EXTEND_5, learning_spec, observation
 
 NOW = "2026-01-02T03:04:05+00:00"
 VERSIONS = {"affcli": "0", "python": "3"}
-SETTINGS = learning_spec().settings
-LONG_RUN = LearningSpec("t-hook", seed=0, robot=0, hours=None, behaviors=120, settings="{}")
+LONG_RUN = learning_spec(behaviors=120)
 """A run that several processes compute at once."""
+ANGLE = 0.25
+"""Of the wrist in every record (rad)."""
+REASONS = (
+    *(Reason("consistent", 9), Reason("probable", 8, 0.5)),
+    *(Reason("reachable", 7), Reason("nearest", 2, 0.2)),
+)
+
+
+def session_spec(kind: str = "solve", *, seed: int = 0, robots: int = 1) -> SessionSpec:
+    """Return a session by what the short learning runs carry."""
+    run = learning_spec()
+    return SessionSpec(
+        *(kind, seed, robots, run.world, run.repertoire, run.binding, run.explorer),
+        planner=Component("nested-query"),
+        sensor=run.sensor,
+        settings=run.settings,
+        task_set="extension-of-reach",
+    )
+
+
+def begun(store: Store, kind: str = "solve", *, seed: int = 0, robots: int = 1) -> int:
+    """Begin a session and return its number."""
+    return store.sessions.begin(session_spec(kind, seed=seed, robots=robots), VERSIONS, NOW)
 
 
 def learning_step(
@@ -52,18 +74,19 @@ def learning_step(
     end_at, end_wrist = Point(at.x + moved[0], at.y + moved[1]), Point(wrist.x, wrist.y + 5.0)
     start, end = observation(at, wrist=wrist), observation(end_at, wrist=end_wrist)
     aim = BehaviorCall.of(POSITION_WRIST, {"x": 0.5 + step, "y": 14.0})
-    row = Affordance(step, BINDING, call, start, end) if change_detected(start, end) else None
+    travel = Point(end_wrist.x - wrist.x, end_wrist.y - wrist.y)
+    row = Affordance(step, BINDING, call, start, end, wrist_angle=ANGLE, travel=travel)
     done = ExecutionStatus.DONE
     record = BabblingRecord(
         step=step,
         clock=5.25 * step,
         resets=resets,
         redraws=redraws,
-        placing=Execution(aim, done, Point(0.0, 17.0), wrist, 2.5),
-        execution=Execution(call, done, wrist, end_wrist, 1.75),
+        placing=Execution(aim, done, Pose(0.0, 17.0), Pose(*wrist, ANGLE), 2.5),
+        execution=Execution(call, done, Pose(*wrist, ANGLE), Pose(*end_wrist, ANGLE), 1.75),
         start=start,
         end=end,
-        affordance=row,
+        affordance=row if change_detected(start, end) else None,
     )
     truth = Truth(Pose(at.x + 0.03, at.y, 0.1), Pose(end_at.x, end_at.y - 0.03, 0.2))
     return record, truth
@@ -80,10 +103,16 @@ def learning_steps(count: int, *, first: int = 1) -> list[LearningStep]:
 def learned(store: Store, count: int = 9, *, spec: LearningSpec | None = None) -> LearningRunInfo:
     """Put a finished run into the store and return what it says of it."""
     spec = spec or learning_spec(behaviors=count)
-    run = store.begin_learning(spec, VERSIONS, NOW)
+    run = store.learning.begin(spec, VERSIONS, NOW)
     steps = learning_steps(count)
-    assert store.append_learning(run.id, 0, steps, None, 5.25 * count, done=True, now=NOW)
-    return store.begin_learning(spec, VERSIONS, NOW)
+    assert store.learning.append(run.id, 0, steps, None, 5.25 * count, done=True, now=NOW)
+    return store.learning.begin(spec, VERSIONS, NOW)
+
+
+def task(goal: int = 2, start: int = 1) -> Task:
+    """Return a task whose places depend on their names."""
+    region = GoalRegion(str(goal), Point(goal / 4, 15.0), 2.25)
+    return Task("extension-of-reach", region, str(start), Point(-3.0, 22.0 + start / 8))
 
 
 def trial_spec(
@@ -95,9 +124,13 @@ def trial_spec(
     protocol: Protocol = Protocol.EXTENSION_OF_REACH,
     counters: Counters = Counters.AS_LEARNED,
     robot: int = 0,
+    planner: str = "nested-query",
 ) -> TrialSpec:
     """Return a trial of the whole tool unless another `shape` is given."""
-    return TrialSpec(protocol, tool, shape or tool, goal, start, 0, robot, counters)
+    return TrialSpec(
+        *(protocol, tool, learning_spec(shape or tool).held, task(goal, start), 0, robot),
+        *(counters, Component.parse(planner), "noisy", Component("table")),
+    )
 
 
 def trial_step(
@@ -115,19 +148,22 @@ def trial_step(
     happened, expected = movement(start, end), row.expected_movement
     status = ExecutionStatus.BLOCKED if blocked else ExecutionStatus.DONE
     aim = BehaviorCall.of(POSITION_WRIST, {"x": 0.5, "y": 14.0})
-    execution = Execution(row.exploratory, ExecutionStatus.DONE, wrist, Point(2.5, 16.0), 1.5)
+    place, end_wrist = Pose(*wrist, ANGLE), Pose(2.5, 16.0, ANGLE)
+    execution = Execution(row.exploratory, ExecutionStatus.DONE, place, end_wrist, 1.5)
     record = StepRecord(
         number=number,
         clock=6.5 * number,
-        survivors=Survivors(9, 8, 7, 2),
+        reasons=REASONS,
         row=row,
-        placing=Execution(aim, status, Point(0.0, 17.0), wrist, 2.0),
+        placing=Execution(aim, status, Pose(0.0, 17.0), place, 2.0),
         execution=None if blocked else execution,
         start=start,
         end=end,
         expected=expected,
         seen=happened,
         replicated=happened.distance > 0.5 and math.copysign(1, happened.dy * expected.dy) > 0,
+        regrasped=number % 2 == 0,
+        threshold=0.5,
     )
     return TrialStep(record, Truth(Pose(3.0, 25.1), Pose(3.1, 29.2)), lost)
 

@@ -5,12 +5,15 @@ from dataclasses import replace
 import pytest
 
 from affcli.core.affordance import Affordance
-from affcli.core.trial import Outcome, Protocol, TrialEnd, TrialRecord, TrialStep
-from affcli.store import LearningRunInfo, StepSums, Store, TrialGroup
+from affcli.core.records import LearningRunInfo
+from affcli.core.results import StepSums, TrialGroup
+from affcli.core.specs import Protocol, TrialRecord
+from affcli.core.trial import Outcome, TrialEnd, TrialStep
+from affcli.store import Store
 from tests.store.records import (
     NOW,
-    SETTINGS,
     VERSIONS,
+    begun,
     counted,
     learned,
     robot_record,
@@ -38,22 +41,18 @@ def save(
     shape: str = "l-hook",
 ) -> int:
     """Put a trial into the store; return its session."""
-    sessions = store.sessions("break-tool")
-    session = (
-        sessions[-1].id
-        if sessions
-        else store.begin_session("break-tool", 0, 1, SETTINGS, VERSIONS, NOW)
-    )
+    sessions = store.sessions.all("break-tool")
+    session = sessions[-1].id if sessions else begun(store, "break-tool")
     protocol = BROKEN if shape != "t-hook" else Protocol.EXTENSION_OF_REACH
     spec = trial_spec(1, start, shape=shape, protocol=protocol)
     record = TrialRecord(spec, steps, TrialEnd(outcome, len(steps), 1.0))
-    _, ids = store.affordance_table(run.id)
-    store.save_trials(session, run.id, [record], ids)
+    _, ids = store.learning.table(run.id)
+    store.trials.save_all(session, run.id, [record], ids)
     return session
 
 
 def rows_of(store: Store, run: LearningRunInfo) -> list[Affordance]:
-    return list(store.affordance_table(run.id, as_learned=True)[0])
+    return list(store.learning.table(run.id, as_learned=True)[0])
 
 
 def test_each_trial_by_itself(store: Store, run: LearningRunInfo) -> None:
@@ -63,7 +62,7 @@ def test_each_trial_by_itself(store: Store, run: LearningRunInfo) -> None:
     well = trial_step(second, 3, lost=False)
     session = save(store, run, 1, vain, again, well)
     save(store, run, 2, replace_number(well, 1), outcome=Outcome.STEP_LIMIT)
-    one, other = store.trial_groups(session, "t-hook", "l-hook", RIGHT, by_robot=False)
+    one, other = store.results.trial_groups(session, "t-hook", "l-hook", RIGHT, by_robot=False)
     assert (one.key, one.trials, one.with_rows) == (1, 1, 1)
     assert one.steps == (
         StepSums(1, 1, 1, (1 / 2 - 1) / 3),
@@ -83,14 +82,14 @@ def test_trials_that_have_not_ended_or_are_invalid_are_left_out(
     vain = trial_step(rows_of(store, run)[0], 1, seen=(0.0, 0.0), lost=True)
     session = save(store, run, 1, vain)
     save(store, run, 2, vain, outcome=Outcome.INVALID)
-    store.begin_trial(session, run.id, trial_spec(1, 3, shape="l-hook", protocol=BROKEN))
-    (group,) = store.trial_groups(session, "t-hook", "l-hook", RIGHT, by_robot=True)
+    store.trials.begin(session, run.id, trial_spec(1, 3, shape="l-hook", protocol=BROKEN))
+    (group,) = store.results.trial_groups(session, "t-hook", "l-hook", RIGHT, by_robot=True)
     assert (group.trials, len(group.steps)) == (1, 1)
 
 
 def test_a_trial_without_steps_counts_as_one(store: Store, run: LearningRunInfo) -> None:
     session = save(store, run, 1, outcome=Outcome.NO_ROW)
-    (group,) = store.trial_groups(session, "t-hook", "l-hook", RIGHT, by_robot=False)
+    (group,) = store.results.trial_groups(session, "t-hook", "l-hook", RIGHT, by_robot=False)
     assert group == TrialGroup(1, 1, 1, ())
 
 
@@ -100,28 +99,28 @@ def test_rows_on_the_other_side_do_not_count(
 ) -> None:
     vain = trial_step(rows_of(store, run)[0], 1, seen=(0.0, 0.0), lost=True)
     session = save(store, run, 1, vain)
-    (group,) = store.trial_groups(session, "t-hook", "l-hook", side, by_robot=False)
+    (group,) = store.results.trial_groups(session, "t-hook", "l-hook", side, by_robot=False)
     assert group == TrialGroup(1, 1, 0, (StepSums(1, 1, 1, 0.0),))
 
 
 def test_the_whole_tool_s_trials_are_told_apart(store: Store, run: LearningRunInfo) -> None:
     well = trial_step(rows_of(store, run)[0], 1)
     session = save(store, run, 1, well, shape="t-hook")
-    assert store.broken_tools(session) == ()
+    assert store.results.broken_tools(session) == ()
     save(store, run, 1, well)
-    assert store.broken_tools(session) == (("t-hook", "l-hook"),)
+    assert store.results.broken_tools(session) == (("t-hook", "l-hook"),)
     for shape in ("t-hook", "l-hook"):
-        (group,) = store.trial_groups(session, "t-hook", shape, RIGHT, by_robot=True)
+        (group,) = store.results.trial_groups(session, "t-hook", shape, RIGHT, by_robot=True)
         assert (group.trials, len(group.steps)) == (1, 1)
 
 
 def test_robots_are_summed_each_with_its_own_table(store: Store) -> None:
     """Robot i babbled 6 + 3 i behaviors: it has 2 + i rows, all on the right."""
-    session = store.begin_session("reproduce", 0, 3, SETTINGS, VERSIONS, NOW)
+    session = begun(store, "reproduce", robots=3)
     for robot in range(3):
         life = robot_record(robot, behaviors=6 + 3 * robot)
-        assert store.save_robot(session, life, VERSIONS, NOW)
-    groups = store.trial_groups(session, "t-hook", "l-hook", RIGHT, by_robot=True)
+        assert store.sessions.save_robot(session, life, VERSIONS, NOW)
+    groups = store.results.trial_groups(session, "t-hook", "l-hook", RIGHT, by_robot=True)
     assert groups == tuple(
         TrialGroup(
             robot,
@@ -131,6 +130,6 @@ def test_robots_are_summed_each_with_its_own_table(store: Store) -> None:
         )
         for robot in range(3)
     )
-    whole = store.trial_groups(session, "t-hook", "t-hook", RIGHT, by_robot=True)
+    whole = store.results.trial_groups(session, "t-hook", "t-hook", RIGHT, by_robot=True)
     assert [(group.key, group.trials) for group in whole] == [(0, 2), (1, 2), (2, 2)]
-    assert store.trial_groups(session + 1, "t-hook", "l-hook", RIGHT, by_robot=True) == ()
+    assert store.results.trial_groups(session + 1, "t-hook", "l-hook", RIGHT, by_robot=True) == ()

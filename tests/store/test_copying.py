@@ -9,7 +9,7 @@ import pytest
 
 from affcli.errors import DatabaseError
 from affcli.store import Store, backup, check, open_store, run_sql, upgrade
-from affcli.store.identity import REVISION
+from affcli.store.revision import REVISION
 from tests.store.processes import child
 from tests.store.records import LONG_RUN, NOW, VERSIONS, learned
 
@@ -30,14 +30,14 @@ def test_a_copy_holds_what_the_database_holds(store: Store, tmp_path: Path) -> N
     assert tables(tmp_path / "copy.db") == tables(store.path)
     assert [p.name for p in tmp_path.iterdir() if p.name.startswith(".")] == []
     with open_store(tmp_path / "copy.db", create=False, write=True) as copy:
-        assert copy.learning_runs() == store.learning_runs()
+        assert copy.learning.runs() == store.learning.runs()
 
 
 @pytest.mark.fault(18)
 def test_a_copy_taken_while_others_write_is_of_one_moment(database: Path, tmp_path: Path) -> None:
     """Fault 18: a run saves chunk after chunk meanwhile; counts and chunks agree in every copy."""
     with open_store(database, create=False, write=True) as store:
-        run = store.begin_learning(LONG_RUN, VERSIONS, NOW)
+        run = store.learning.begin(LONG_RUN, VERSIONS, NOW)
     seen: list[object] = []
     with child("append_in_chunks", database) as writer:
         assert writer.stdin is not None

@@ -16,9 +16,9 @@ PAGE = 4096
 
 def answers(store: Store) -> tuple[object, ...]:
     """Return what a report asks a database for."""
-    runs = store.learning_runs()
-    groups = [store.behavior_groups(run.id) for run in runs]
-    tables = [list(store.affordance_table(run.id)[0]) for run in runs]
+    runs = store.learning.runs()
+    groups = [store.results.behavior_groups(run.id) for run in runs]
+    tables = [list(store.learning.table(run.id)[0]) for run in runs]
     return runs, groups, tables
 
 

@@ -16,17 +16,17 @@ from tests.store.records import NOW, VERSIONS, learned, learning_steps
 def test_a_full_disk_loses_only_the_chunk_that_did_not_fit(database: Path) -> None:
     spec = learning_spec(behaviors=4000)
     with open_store(database, create=False, write=True) as store:
-        run = store.begin_learning(spec, VERSIONS, NOW)
-        assert store.append_learning(run.id, 0, learning_steps(90), {}, 1, done=False, now=NOW)
-        saved = store.begin_learning(spec, VERSIONS, NOW)
-        pages = store._driver.execute("PRAGMA page_count").fetchone()[0]
-        store._driver.execute(f"PRAGMA max_page_count = {pages + 2}")
+        run = store.learning.begin(spec, VERSIONS, NOW)
+        assert store.learning.append(run.id, 0, learning_steps(90), {}, 1, done=False, now=NOW)
+        saved = store.learning.begin(spec, VERSIONS, NOW)
+        pages = store.database._driver.execute("PRAGMA page_count").fetchone()[0]
+        store.database._driver.execute(f"PRAGMA max_page_count = {pages + 2}")
         more = learning_steps(900, first=91)
         with pytest.raises(DatabaseError, match="the disk is full; what was saved before is kept"):
-            store.append_learning(run.id, 90, more, {}, 2, done=False, now=NOW)
-        assert store.begin_learning(spec, VERSIONS, NOW) == saved
-        store._driver.execute("PRAGMA max_page_count = 1000000")
-        assert store.append_learning(run.id, 90, more, {}, 2, done=False, now=NOW)
+            store.learning.append(run.id, 90, more, {}, 2, done=False, now=NOW)
+        assert store.learning.begin(spec, VERSIONS, NOW) == saved
+        store.database._driver.execute("PRAGMA max_page_count = 1000000")
+        assert store.learning.append(run.id, 90, more, {}, 2, done=False, now=NOW)
     assert sound(database)
 
 
@@ -42,7 +42,7 @@ def test_a_file_that_may_not_grow_is_reported_too(database: Path) -> None:
                 learned(store, 900)
         finally:
             resource.setrlimit(resource.RLIMIT_FSIZE, old)
-        assert len(store.learning_runs(status="done")) == 1
+        assert len(store.learning.runs(status="done")) == 1
     assert sound(database)
 
 

@@ -9,15 +9,17 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from affcli.core.affordance import Affordance
-from affcli.core.behavior import BehaviorCall, BehaviorName, ExecutionStatus
+from affcli.core.behavior import GRASP, BehaviorCall, BehaviorName, ExecutionStatus
 from affcli.core.geometry import Point, Pose, direction_degrees
+from affcli.core.identity import Component
 from affcli.core.observation import Observation
+from affcli.core.specs import LearningStep
 from affcli.errors import DatabaseError
 from affcli.lab.learning_run import LearningRun
-from affcli.store import LearningStep, Store, run_sql
-from affcli.store.learning import insert_learning_steps
+from affcli.store import Store, run_sql
+from affcli.store.learning import insert_steps
 from tests.factories import learning_spec
-from tests.store.records import NOW, VERSIONS, learned, learning_step, learning_steps
+from tests.store.records import NOW, VERSIONS, begun, learned, learning_step, learning_steps
 
 LATER = "2026-01-02T04:04:05+00:00"
 
@@ -28,15 +30,15 @@ def rows_of(steps: Iterable[LearningStep]) -> list[Affordance]:
 
 def test_a_new_run_is_empty_and_says_what_it_is(store: Store) -> None:
     spec = learning_spec("stick", seed=2**63 - 1, behaviors=50)
-    run = store.begin_learning(spec, VERSIONS, NOW)
+    run = store.learning.begin(spec, VERSIONS, NOW)
     assert (run.spec, run.versions, run.status, run.started_at) == (spec, VERSIONS, "running", NOW)
     assert (run.behaviors, run.rows, run.resets, run.redraws, run.robot_seconds) == (0, 0, 0, 0, 0)
     assert (run.checkpoint, run.finished_at, run.session_id) == (None, None, None)
 
 
 def test_the_same_spec_finds_the_same_run(store: Store) -> None:
-    first = store.begin_learning(learning_spec(), VERSIONS, NOW)
-    assert store.begin_learning(learning_spec(), {"affcli": "9"}, LATER) == first
+    first = store.learning.begin(learning_spec(), VERSIONS, NOW)
+    assert store.learning.begin(learning_spec(), {"affcli": "9"}, LATER) == first
 
 
 @pytest.mark.parametrize(
@@ -47,66 +49,72 @@ def test_the_same_spec_finds_the_same_run(store: Store) -> None:
         learning_spec(robot=1),
         learning_spec(behaviors=21),
         learning_spec(hours=20.0),
-        replace(learning_spec(), settings="{}"),
+        replace(learning_spec(), settings='{"trial.max_steps":6}'),
+        replace(learning_spec(), repertoire=learning_spec().repertoire[1:]),
+        replace(learning_spec(), binding=BehaviorCall.of(GRASP, {"grasp_point": 2.0})),
+        replace(learning_spec(), explorer=Component.parse("focused:share=0.5")),
+        replace(learning_spec(), sensor="exact"),
+        replace(learning_spec(), world=Component("table", version=2)),
+        replace(learning_spec(), held=learning_spec("stick").held),
     ],
 )
 def test_another_spec_is_another_run(other: object, store: Store) -> None:
-    first = store.begin_learning(learning_spec(), VERSIONS, NOW)
-    assert store.begin_learning(other, VERSIONS, NOW).id != first.id  # type: ignore[arg-type]
+    first = store.learning.begin(learning_spec(), VERSIONS, NOW)
+    assert store.learning.begin(other, VERSIONS, NOW).id != first.id  # type: ignore[arg-type]
 
 
 def test_chunks_add_up_to_the_whole_run(store: Store) -> None:
-    run = store.begin_learning(learning_spec(behaviors=10), VERSIONS, NOW)
+    run = store.learning.begin(learning_spec(behaviors=10), VERSIONS, NOW)
     steps = learning_steps(10)
     checkpoint = {"step": 4, "streams": {"noise": {"state": 2**127 + 1}}, "seen": [0.1, None]}
-    assert store.append_learning(run.id, 0, steps[:4], checkpoint, 21.0, done=False, now=LATER)
-    halfway = store.begin_learning(run.spec, VERSIONS, NOW)
+    assert store.learning.append(run.id, 0, steps[:4], checkpoint, 21.0, done=False, now=LATER)
+    halfway = store.learning.begin(run.spec, VERSIONS, NOW)
     assert (halfway.behaviors, halfway.rows, halfway.resets) == (4, 1, 2)
     assert (halfway.robot_seconds, halfway.status, halfway.checkpoint) == (
         *(21.0, "running"),
         checkpoint,
     )
-    assert store.append_learning(run.id, 4, steps[4:], checkpoint, 52.5, done=True, now=LATER)
-    whole = store.begin_learning(run.spec, VERSIONS, NOW)
+    assert store.learning.append(run.id, 4, steps[4:], checkpoint, 52.5, done=True, now=LATER)
+    whole = store.learning.begin(run.spec, VERSIONS, NOW)
     assert (whole.behaviors, whole.rows, whole.resets, whole.redraws) == (10, 3, 5, 0)
     assert (whole.robot_seconds, whole.status, whole.finished_at) == (52.5, "done", LATER)
     assert whole.checkpoint is None
-    table, ids = store.affordance_table(run.id)
+    table, ids = store.learning.table(run.id)
     assert list(table) == rows_of(steps)
     assert list(ids) == [3, 6, 9]
 
 
 def test_a_chunk_that_another_process_has_saved_is_left_out(store: Store) -> None:
-    run = store.begin_learning(learning_spec(), VERSIONS, NOW)
+    run = store.learning.begin(learning_spec(), VERSIONS, NOW)
     steps = learning_steps(6)
-    assert store.append_learning(run.id, 0, steps[:4], {"step": 4}, 21.0, done=False, now=NOW)
-    before = store.begin_learning(run.spec, VERSIONS, NOW)
-    assert not store.append_learning(run.id, 0, steps[:4], {"step": 4}, 21.0, done=False, now=NOW)
-    assert not store.append_learning(run.id, 2, steps[2:], {"step": 6}, 31.5, done=True, now=NOW)
-    assert store.begin_learning(run.spec, VERSIONS, NOW) == before
+    assert store.learning.append(run.id, 0, steps[:4], {"step": 4}, 21.0, done=False, now=NOW)
+    before = store.learning.begin(run.spec, VERSIONS, NOW)
+    assert not store.learning.append(run.id, 0, steps[:4], {"step": 4}, 21.0, done=False, now=NOW)
+    assert not store.learning.append(run.id, 2, steps[2:], {"step": 6}, 31.5, done=True, now=NOW)
+    assert store.learning.begin(run.spec, VERSIONS, NOW) == before
 
 
 def test_a_finished_run_takes_nothing_more(store: Store) -> None:
     run = learned(store, 3)
-    assert not store.append_learning(
+    assert not store.learning.append(
         run.id, 3, learning_steps(1, first=4), None, 99.0, done=True, now=LATER
     )
-    assert store.begin_learning(run.spec, VERSIONS, NOW) == run
+    assert store.learning.begin(run.spec, VERSIONS, NOW) == run
 
 
 def test_a_gap_between_chunks_is_a_bug(store: Store) -> None:
-    run = store.begin_learning(learning_spec(), VERSIONS, NOW)
+    run = store.learning.begin(learning_spec(), VERSIONS, NOW)
     with pytest.raises(ValueError, match="0 behaviors, not 5"):
-        store.append_learning(run.id, 5, learning_steps(1, first=6), {}, 1, done=False, now=NOW)
+        store.learning.append(run.id, 5, learning_steps(1, first=6), {}, 1, done=False, now=NOW)
 
 
 def test_a_chunk_is_saved_whole_or_not_at_all(store: Store) -> None:
-    run = store.begin_learning(learning_spec(), VERSIONS, NOW)
+    run = store.learning.begin(learning_spec(), VERSIONS, NOW)
     torn = [*learning_steps(3), learning_step(3)]  # step 3 twice
     with pytest.raises(Exception, match="UNIQUE constraint failed"):
-        store.append_learning(run.id, 0, torn, {}, 1.0, done=False, now=NOW)
-    assert store.begin_learning(run.spec, VERSIONS, NOW) == run
-    assert len(store.affordance_table(run.id)[0]) == 0
+        store.learning.append(run.id, 0, torn, {}, 1.0, done=False, now=NOW)
+    assert store.learning.begin(run.spec, VERSIONS, NOW) == run
+    assert len(store.learning.table(run.id)[0]) == 0
 
 
 def test_a_run_can_go_on_from_its_stored_checkpoint(store: Store) -> None:
@@ -116,9 +124,9 @@ def test_a_run_can_go_on_from_its_stored_checkpoint(store: Store) -> None:
     begun = LearningRun(spec)
     steps = begun.steps()
     first = [next(steps) for _ in range(5)]
-    run = store.begin_learning(spec, VERSIONS, NOW)
-    store.append_learning(run.id, 0, first, begun.checkpoint(), 1.0, done=False, now=NOW)
-    stored = store.begin_learning(spec, VERSIONS, NOW)
+    run = store.learning.begin(spec, VERSIONS, NOW)
+    store.learning.append(run.id, 0, first, begun.checkpoint(), 1.0, done=False, now=NOW)
+    stored = store.learning.begin(spec, VERSIONS, NOW)
     rest = list(LearningRun(spec, stored.checkpoint).steps())
     assert first + rest == whole
 
@@ -149,6 +157,8 @@ def affordances(draw: st.DrawFn) -> Affordance:
         truncated=draw(st.booleans()),
         times_used=used,
         times_successful=draw(st.integers(0, used)),
+        wrist_angle=draw(components),
+        travel=Point(draw(components), draw(components)),
     )
 
 
@@ -158,19 +168,19 @@ def test_an_affordance_table_is_read_as_it_was_written(
     store: Store, rows: list[Affordance]
 ) -> None:
     """Every name, parameter and number comes back the same; as learned the counters are 1."""
-    run = store.begin_learning(learning_spec(seed=next(numbers)), VERSIONS, NOW)
+    run = store.learning.begin(learning_spec(seed=next(numbers)), VERSIONS, NOW)
     steps = []
     for row in rows:
         record, truth = learning_step(1)
         executed = replace(record.execution, call=row.exploratory, status=ExecutionStatus.DONE)
         steps.append((replace(record, step=row.step, execution=executed, affordance=row), truth))
-    with store.writing() as connection:
-        assert insert_learning_steps(connection, run.id, run.spec.tool, steps) == len(rows)
-    table, ids = store.affordance_table(run.id)
+    with store.database.writing() as connection:
+        assert insert_steps(connection, run.id, run.spec.tool, steps) == len(rows)
+    table, ids = store.learning.table(run.id)
     oldest_first = sorted(rows, key=lambda row: row.step)
     assert list(table) == oldest_first
     assert set(ids) == {row.step for row in rows}
-    fresh, _ = store.affordance_table(run.id, as_learned=True)
+    fresh, _ = store.learning.table(run.id, as_learned=True)
     assert list(fresh) == [replace(r, times_used=1, times_successful=1) for r in oldest_first]
 
 
@@ -194,6 +204,8 @@ def test_every_behavior_is_kept_with_what_was_commanded_seen_and_true(store: Sto
             "place_y": record.placing.call["y"],
             "wrist_start_x": execution.wrist_start.x,
             "wrist_start_y": execution.wrist_start.y,
+            "wrist_start_angle": execution.wrist_start.angle,
+            "wrist_end_angle": execution.wrist_end.angle,
             "wrist_end_x": execution.wrist_end.x,
             "wrist_end_y": execution.wrist_end.y,
             "start_object_x": start.object_x,
@@ -215,10 +227,10 @@ def test_every_behavior_is_kept_with_what_was_commanded_seen_and_true(store: Sto
 
 
 def test_movement_and_direction_are_those_of_the_row(store: Store) -> None:
-    run = store.begin_learning(learning_spec(), VERSIONS, NOW)
+    run = store.learning.begin(learning_spec(), VERSIONS, NOW)
     moves = [(4.0, 0.0), (3.0, 3.0), (0.0, 2.0), (-1.0, 0.0), (0.0, -5.0), (1.0, -1e-18)]
     steps = [learning_step(n, moved=move) for n, move in enumerate(moves, 1)]
-    store.append_learning(run.id, 0, steps, {}, 1.0, done=False, now=NOW)
+    store.learning.append(run.id, 0, steps, {}, 1.0, done=False, now=NOW)
     stored = run_sql(store.path, "select movement, direction from affordance order by step").rows
     for (movement, direction), row in zip(stored, rows_of(steps), strict=True):
         expected = row.expected_movement
@@ -227,48 +239,48 @@ def test_movement_and_direction_are_those_of_the_row(store: Store) -> None:
 
 
 def test_runs_are_listed_and_the_latest_finished_one_found(store: Store) -> None:
-    assert store.latest_run("t-hook") is None
+    assert store.learning.latest("t-hook") is None
     first = learned(store, 3)
     second = learned(store, 6)
-    running = store.begin_learning(learning_spec(seed=5), VERSIONS, NOW)
+    running = store.learning.begin(learning_spec(seed=5), VERSIONS, NOW)
     stick = learned(store, spec=learning_spec("stick", behaviors=9))
-    session = store.begin_session("reproduce", 0, 1, "{}", VERSIONS, NOW)
-    part = store.begin_learning(learning_spec(), VERSIONS, LATER, session)
-    store.append_learning(part.id, 0, learning_steps(3), None, 1.0, done=True, now=LATER)
-    assert store.learning_runs() == (first, second, running, stick)
-    assert store.learning_runs(tool="t-hook", status="done") == (first, second)
-    assert [run.id for run in store.learning_runs(session_id=session)] == [part.id]
-    assert store.latest_run("t-hook") == second
-    assert store.latest_run("l-hook") is None
+    session = begun(store, "reproduce")
+    part = store.learning.begin(learning_spec(), VERSIONS, LATER, session)
+    store.learning.append(part.id, 0, learning_steps(3), None, 1.0, done=True, now=LATER)
+    assert store.learning.runs() == (first, second, running, stick)
+    assert store.learning.runs(tool="t-hook", status="done") == (first, second)
+    assert [run.id for run in store.learning.runs(session_id=session)] == [part.id]
+    assert store.learning.latest("t-hook") == second
+    assert store.learning.latest("l-hook") is None
 
 
 def test_row_starts_tell_where_wrist_and_attractor_were(store: Store) -> None:
     run = learned(store, 6)
-    starts = store.row_starts(run.id)
+    starts = store.learning.row_starts(run.id)
     assert starts == {
         record.step: (record.execution.wrist_start, truth.start)
         for record, truth in learning_steps(6)
         if record.affordance is not None
     }
     wrist, attractor = starts[3]
-    assert type(wrist) is Point
-    assert type(attractor) is Pose
+    assert type(wrist) is type(attractor) is Pose
 
 
 @pytest.mark.parametrize(
     "tool", ["x'); DROP TABLE affordance; --", "[/]", '"; PRAGMA x', "\x1b[0m"]
 )
 def test_text_from_outside_is_inert(tool: str, store: Store) -> None:
-    run = learned(store, spec=learning_spec(tool, behaviors=9))
-    assert store.latest_run(tool) == run
-    assert len(store.affordance_table(run.id)[0]) == 3
-    assert [r.spec.tool for r in store.learning_runs()] == [tool]
+    named = replace(learning_spec(behaviors=9), held=replace(learning_spec().held, name=tool))
+    run = learned(store, spec=named)
+    assert store.learning.latest(tool) == run
+    assert len(store.learning.table(run.id)[0]) == 3
+    assert [r.spec.tool for r in store.learning.runs()] == [tool]
 
 
 @pytest.mark.parametrize("params", ["{", "[]", '{"offset_distance": "far"}', "null"])
 def test_a_value_that_affcli_did_not_write_is_named(params: str, store: Store) -> None:
     run = learned(store)
-    with store.writing() as connection:
+    with store.database.writing() as connection:
         connection.exec_driver_sql("UPDATE affordance SET binding_params = ?", (params,))
     with pytest.raises(DatabaseError, match=f"the affordance table of run {run.id} holds a value"):
-        store.affordance_table(run.id)
+        store.learning.table(run.id)

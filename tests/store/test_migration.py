@@ -11,13 +11,9 @@ import pytest
 
 import affcli
 from affcli.errors import DatabaseError
-from affcli.lab.learning import learn
-from affcli.lab.solving import SolvedTrial, solve
-from affcli.lab.verifying import verification_spec, verify
-from affcli.store import check, database_info, open_store, run_sql, upgrade
-from affcli.store.identity import REVISION
+from affcli.store import database_info, open_store, run_sql, upgrade
 from affcli.store.migrate import migrations_folder
-from affcli.store.rows import TrialRow
+from affcli.store.revision import REVISION
 from tests.store.records import learned
 
 LATER = f"{int(REVISION) + 1:04}"
@@ -44,7 +40,7 @@ def later_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     shutil.copytree(migrations_folder(), folder, ignore=shutil.ignore_patterns("__pycache__"))
     (folder / "versions" / f"{LATER}_next.py").write_text(NEXT.format(more=""))
     monkeypatch.setattr("affcli.store.migrate.migrations_folder", lambda: folder)
-    for module in ("identity", "opening", "info"):
+    for module in ("revision", "opening", "info"):
         monkeypatch.setattr(f"affcli.store.{module}.REVISION", LATER)
     return folder
 
@@ -131,73 +127,6 @@ def test_a_migration_that_fails_leaves_the_old_schema(database: Path, later_code
     assert run_sql_raw(database, "SELECT version_num FROM alembic_version") == [(REVISION,)]
 
 
-DATABASES = Path(__file__).parent / "databases"
-"""A database of every past revision, made by the affcli of its time."""
-KEPT = ("session", "learning_run", "behavior", "affordance", "trial", "step")
-
-
-@pytest.mark.parametrize("revision", [f"{k:04}" for k in range(1, int(REVISION))])
-def test_a_database_of_every_past_revision_is_upgraded_and_then_used(
-    revision: str, tmp_path: Path
-) -> None:
-    """Nothing is lost, the view reads as before, and the robot goes on with what it learned."""
-    old = Path(shutil.copy(DATABASES / f"{revision}.db", tmp_path / "old.db"))
-    old.chmod(0o644)
-    view = "SELECT * FROM affordance_table ORDER BY id"
-    before = run_sql_raw(old, view)
-    counts = {name: run_sql_raw(old, f"SELECT count(*) FROM {name}") for name in KEPT}
-    assert upgrade(old) == (revision, REVISION)
-    assert run_sql_raw(old, view) == before
-    assert {name: run_sql_raw(old, f"SELECT count(*) FROM {name}") for name in KEPT} == counts
-    assert all(rows > [(0,)] for rows in counts.values())
-    with open_store(old, create=False, write=True) as store:
-        run = store.latest_run("t-hook")
-        assert run is not None
-        table, ids = store.affordance_table(run.id)
-        assert len(table) == len(ids) == run.rows
-        seen = {t.sensor for t in map(TrialRow._make, old_trials(old))}
-        assert seen == ({"noisy"} if revision == "0001" else {"noisy", "camera"})
-
-
-def old_trials(path: Path) -> list[tuple[object, ...]]:
-    """Return the trials of a database, as the code's rows have their columns."""
-    return run_sql_raw(path, f"SELECT {', '.join(TrialRow._fields)} FROM trial")
-
-
-def test_an_upgraded_database_solves_and_learns(tmp_path: Path) -> None:
-    old = Path(shutil.copy(DATABASES / "0001.db", tmp_path / "old.db"))
-    old.chmod(0o644)
-    upgrade(old)
-    with open_store(old, create=False, write=True) as store:
-        run = store.latest_run("t-hook")
-        assert run is not None
-        ended = [
-            event
-            for event in solve(store, [run], 4, [1], 0, lambda: "now")
-            if isinstance(event, SolvedTrial)
-        ]
-        assert len(ended) == 1
-        assert not learn(store, run.spec, lambda: "now").new
-
-
-@pytest.mark.parametrize("revision", ["0001", "0002"])
-def test_the_table_of_an_upgraded_database_can_be_verified(revision: str, tmp_path: Path) -> None:
-    """What changed its counters before is still accounted for."""
-    old = Path(shutil.copy(DATABASES / f"{revision}.db", tmp_path / "old.db"))
-    old.chmod(0o644)
-    upgrade(old)
-    with open_store(old, create=False, write=True) as store:
-        run = store.latest_run("t-hook")
-        assert run is not None
-        spec = verification_spec(run, "l-hook", 0, None, 12, until_verdict=False)
-        tried = list(verify(store, run, spec, lambda: "now", update=True))
-    assert run_sql_raw(old, "SELECT count(*) FROM replication") == [(12,)]
-    ((last,),) = run_sql_raw(old, "SELECT max(id) FROM trial")
-    assert run_sql_raw(old, "SELECT tries, after_trial FROM verification") == [(12, last)]
-    assert max(one.record.times_used_after for one in tried) > 2
-    assert [finding for finding in check(old) if finding.wrong] == []
-
-
 LOADED = """
 import sys
 from pathlib import Path
@@ -207,7 +136,7 @@ run_sql(path, "select 1")
 assert "sqlalchemy" not in sys.modules
 from affcli.store import open_store
 with open_store(path, create=True, write=True) as store:
-    store.learning_runs()
+    store.learning.runs()
 assert "sqlalchemy" in sys.modules
 print([name for name in ("sqlalchemy.orm", "alembic") if name in sys.modules])
 """

@@ -9,14 +9,14 @@ import pytest
 
 from affcli.errors import DatabaseError
 from affcli.store import database_info, open_store, run_sql, upgrade
-from affcli.store.identity import REVISION
 from affcli.store.journal import journal_mode_for
+from affcli.store.revision import REVISION
 from tests.store.records import learned
 
 
 def read(path: Path) -> None:
     with open_store(path, create=False, write=False) as store:
-        store.learning_runs()
+        store.learning.runs()
 
 
 def write(path: Path) -> None:

@@ -67,7 +67,7 @@ def test_a_lock_held_too_long_says_who_holds_it(database: Path) -> None:
         assert "wait until it is done" in message
         if Path("/proc/locks").exists():
             assert f"process {other.pid}" in message
-        assert store.learning_runs() == ()  # a writer does not keep readers out
+        assert store.learning.runs() == ()  # a writer does not keep readers out
 
 
 @pytest.mark.fault(5)
@@ -103,7 +103,7 @@ def test_a_writer_waits_for_a_reader_and_loses_nothing(database: Path) -> None:
                 learned(hasty)
             if Path("/proc/locks").exists():
                 assert f"process {reader.pid}" in str(caught.value)
-            assert hasty.learning_runs() == ()
+            assert hasty.learning.runs() == ()
         run = learned(hasty)
         assert run.behaviors == 9
     with (
@@ -128,8 +128,8 @@ def test_two_processes_may_compute_the_same_run(database: Path) -> None:
         ends = [(one.communicate(timeout=60)[1], one.returncode) for one in both]
     assert ends == [("", 0)] * 2
     with open_store(database, create=False, write=True) as store:
-        run = store.begin_learning(LONG_RUN, VERSIONS, NOW)
-        table, _ = store.affordance_table(run.id)
+        run = store.learning.begin(LONG_RUN, VERSIONS, NOW)
+        table, _ = store.learning.table(run.id)
     rows = [r.affordance for r, _ in learning_steps(120) if r.affordance is not None]
     assert list(table) == rows
     assert (run.status, run.behaviors, run.rows, run.checkpoint) == ("done", 120, 40, None)
@@ -148,7 +148,7 @@ def test_after_a_kill_the_file_is_set_right_by_whoever_reads_it(first: str, data
     if first == "sql":
         assert run_sql(database, "select status from learning_run").rows == (("done",),)
     with open_store(database, create=False, write=False) as store:
-        assert [run.status for run in store.learning_runs()] == ["done"]
+        assert [run.status for run in store.learning.runs()] == ["done"]
     assert integrity(database) == "ok"
 
 

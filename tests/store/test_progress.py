@@ -2,13 +2,15 @@
 
 import pytest
 
-from affcli.core.trial import Counters, Outcome, TrialEnd
-from affcli.store import LearningInterval, Store
+from affcli.core.results import LearningInterval
+from affcli.core.specs import Counters
+from affcli.core.trial import Outcome, TrialEnd
+from affcli.store import Store
 from tests.factories import learning_spec
 from tests.store.records import (
     NOW,
-    SETTINGS,
     VERSIONS,
+    begun,
     counted,
     learned,
     learning_steps,
@@ -29,53 +31,55 @@ def test_every_behavior_is_counted_in_the_interval_in_which_it_ended(
         number = int(record.clock / seconds)
         done, made = expected.get(number, (0, 0))
         expected[number] = (done + 1, made + (record.affordance is not None))
-    assert store.learning_progress(seconds, run_ids=[run.id]) == tuple(
+    assert store.results.learning_intervals(seconds, run_ids=[run.id]) == tuple(
         LearningInterval(run.id, number, *expected[number]) for number in sorted(expected)
     )
 
 
 def test_of_a_reproduction_every_robot_is_counted_and_of_a_run_only_that(store: Store) -> None:
     alone = learned(store)
-    session = store.begin_session("reproduce", 0, 2, SETTINGS, VERSIONS, NOW)
+    session = begun(store, "reproduce", robots=2)
     for robot in (0, 1):
-        assert store.save_robot(session, robot_record(robot), VERSIONS, NOW)
-    runs = {run.id: run.spec for run in store.learning_runs(session_id=session)}
-    whole = store.learning_progress(1e6, session_id=session)
+        assert store.sessions.save_robot(session, robot_record(robot), VERSIONS, NOW)
+    runs = {run.id: run.spec for run in store.learning.runs(session_id=session)}
+    whole = store.results.learning_intervals(1e6, session_id=session)
     assert [(i.run_id, i.number, i.behaviors, i.effects) for i in whole] == [
         (run, 0, 6, 2) for run in runs
     ]
-    hooks = store.learning_progress(1e6, session_id=session, tools=["t-hook"])
+    hooks = store.results.learning_intervals(1e6, session_id=session, tools=["t-hook"])
     assert {runs[i.run_id].tool for i in hooks} == {"t-hook"}
     assert len(hooks) == 2
-    assert [i.run_id for i in store.learning_progress(1e6, run_ids=[alone.id])] == [alone.id]
-    assert store.learning_progress(1e6) == ()
+    assert [i.run_id for i in store.results.learning_intervals(1e6, run_ids=[alone.id])] == [
+        alone.id
+    ]
+    assert store.results.learning_intervals(1e6) == ()
 
 
 def stored_trial(store: Store, run: int, session: int, start: int, *failed: int) -> int:
     """Do a trial that updates the stored counters and in which some rows fail once."""
-    rows, ids = store.affordance_table(run)
+    rows, ids = store.learning.table(run)
     spec = trial_spec(start=start, counters=Counters.STORED)
-    trial = store.begin_trial(session, run, spec)
+    trial = store.trials.begin(session, run, spec)
     for number, position in enumerate(failed, 1):
         row = rows.row(position)
         step = trial_step(row, number, seen=(0.0, 0.0))
-        store.save_step(trial, spec, step.record, step.truth, ids[row.step])
+        store.trials.save_step(trial, spec, step.record, step.truth, ids[row.step])
         assert counted(row, step.record).replication_probability <= 0.5
-    store.end_trial(trial, TrialEnd(Outcome.SOLVED, len(failed), 6.5))
+    store.trials.end(trial, TrialEnd(Outcome.SOLVED, len(failed), 6.5))
     return trial
 
 
 def test_a_trial_finds_excluded_what_died_in_the_trials_before_it(store: Store) -> None:
     run = learned(store)
-    _, ids = store.affordance_table(run.id)
+    _, ids = store.learning.table(run.id)
     by_age = [ids[step] for step in sorted(ids)]
-    session = store.begin_session("solve", 0, 1, SETTINGS, VERSIONS, NOW)
+    session = begun(store)
     first = stored_trial(store, run.id, session, 1, 0)
     second = stored_trial(store, run.id, session, 2, 1)
     third = stored_trial(store, run.id, session, 3)
-    assert store.rows_excluded_before(first) == set()
-    assert store.rows_excluded_before(second) == {by_age[0]}
-    assert store.rows_excluded_before(third) == {by_age[0], by_age[1]}
+    assert store.trials.excluded_before(first) == set()
+    assert store.trials.excluded_before(second) == {by_age[0]}
+    assert store.trials.excluded_before(third) == {by_age[0], by_age[1]}
 
 
 @pytest.mark.parametrize("counters", Counters)
@@ -85,10 +89,10 @@ def test_a_trial_that_starts_from_the_table_as_learned_finds_all_rows(
     """Nor does what dies in such a trial count for later ones, or for another run."""
     run = learned(store)
     other = learned(store, spec=learning_spec(seed=5, behaviors=9))
-    session = store.begin_session("solve", 0, 1, SETTINGS, VERSIONS, NOW)
+    session = begun(store)
     stored_trial(store, run.id, session, 1, 0)
-    later = store.begin_trial(session, run.id, trial_spec(start=2, counters=counters))
-    assert len(store.rows_excluded_before(later)) == (counters is Counters.STORED)
-    foreign = store.begin_session("solve", 0, 1, SETTINGS, VERSIONS, NOW)
+    later = store.trials.begin(session, run.id, trial_spec(start=2, counters=counters))
+    assert len(store.trials.excluded_before(later)) == (counters is Counters.STORED)
+    foreign = begun(store)
     spec = trial_spec(counters=Counters.STORED)
-    assert store.rows_excluded_before(store.begin_trial(foreign, other.id, spec)) == set()
+    assert store.trials.excluded_before(store.trials.begin(foreign, other.id, spec)) == set()

@@ -11,27 +11,17 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from affcli.core.behavior import (
-    CONTRACT_ARM,
-    EXTEND_ARM,
-    SLIDE_ARM_LEFT,
-    BehaviorCall,
-    BehaviorName,
-)
+from affcli.behaviors.moving import CONTRACT_ARM, EXTEND_ARM, SLIDE_ARM_LEFT
+from affcli.core.behavior import BehaviorCall, BehaviorName
+from affcli.core.records import StoredRow
+from affcli.core.row_filter import Column, Relation, RowFilter
 from affcli.errors import DatabaseError
-from affcli.store import (
-    Column,
-    Relation,
-    RowFilter,
-    Store,
-    StoredRow,
-    open_store,
-)
+from affcli.store import Store, open_store
 from tests.factories import learning_spec
 from tests.store.records import (
     NOW,
-    SETTINGS,
     VERSIONS,
+    begun,
     learned,
     learning_step,
     robot_record,
@@ -58,9 +48,9 @@ def varied(empty_database: Path, tmp_path_factory: pytest.TempPathFactory) -> Pa
                 learning_step(n, moved=(0.0, 4.0), call=call(NAMES[n % 3], 2.0 + 3.0 * (n % 2)))
                 for n in range(1, 13)
             ]
-            run = store.begin_learning(learning_spec(tool, seed=seed), VERSIONS, NOW)
-            store.append_learning(run.id, 0, steps, None, 1.0, done=True, now=NOW)
-        with store.writing() as connection:
+            run = store.learning.begin(learning_spec(tool, seed=seed), VERSIONS, NOW)
+            store.learning.append(run.id, 0, steps, None, 1.0, done=True, now=NOW)
+        with store.database.writing() as connection:
             connection.exec_driver_sql(
                 "UPDATE affordance"
                 " SET times_used = 1 + id % 5, times_successful = id % (2 + id % 5)"
@@ -112,17 +102,17 @@ def naive(rows: list[StoredRow], wanted: RowFilter) -> list[int]:
 @given(filters)
 def test_the_filter_of_the_database_is_that_of_a_person(rows: Store, wanted: RowFilter) -> None:
     """Row by row, listed and taken out."""
-    every = [row for run in RUNS for row in rows.affordances(run)]
+    every = [row for run in RUNS for row in rows.learning.rows(run)]
     assert len(every) == 36
     left = naive(every, wanted)
-    assert [row.id for row in rows.select_rows(wanted)] == left
-    taken = rows.extract("rows", wanted, lambda _, found: [row[0] for row in found])
+    assert [row.id for row in rows.selections.rows(wanted)] == left
+    taken = rows.selections.extract("rows", wanted, lambda _, found: [row[0] for row in found])
     assert taken == left
 
 
 def test_listed_rows_are_those_of_their_run(rows: Store) -> None:
-    assert rows.select_rows(RowFilter(runs=(2,))) == rows.affordances(2)
-    assert rows.select_rows(RowFilter(runs=())) == ()
+    assert rows.selections.rows(RowFilter(runs=(2,))) == rows.learning.rows(2)
+    assert rows.selections.rows(RowFilter(runs=())) == ()
 
 
 TAKEN: dict[Relation, tuple[str, str]] = {
@@ -136,13 +126,13 @@ TAKEN: dict[Relation, tuple[str, str]] = {
 @pytest.fixture
 def lives(store: Store) -> Store:
     """A store with the lives of two robots, and a run of a person's own with a trial."""
-    session = store.begin_session("reproduce", 0, 2, SETTINGS, VERSIONS, NOW)
+    session = begun(store, "reproduce", robots=2)
     for robot in (0, 1):
-        store.save_robot(session, robot_record(robot), VERSIONS, NOW)
+        store.sessions.save_robot(session, robot_record(robot), VERSIONS, NOW)
     run = learned(store)
-    table, ids = store.affordance_table(run.id)
-    solving = store.begin_session("solve", 0, 1, SETTINGS, VERSIONS, NOW)
-    store.save_trials(solving, run.id, [trial_record(trial_spec(), list(table))], ids)
+    table, ids = store.learning.table(run.id)
+    solving = begun(store)
+    store.trials.save_all(solving, run.id, [trial_record(trial_spec(), list(table))], ids)
     return store
 
 
@@ -165,7 +155,9 @@ def test_all_columns_are_taken_out_as_they_stand(what: Relation, lives: Store) -
         (RowFilter(tool="t-hook", runs=(1,)), []),
         (RowFilter(limit=1), every[:1]),
     ):
-        columns, found = lives.extract(what, wanted, lambda c, rows: (list(c), list(rows)))
+        columns, found = lives.selections.extract(
+            what, wanted, lambda c, rows: (list(c), list(rows))
+        )
         assert [column.name for column in columns] == names
         assert found == left
         for row in found:
@@ -175,9 +167,11 @@ def test_all_columns_are_taken_out_as_they_stand(what: Relation, lives: Store) -
 
 def test_the_kinds_of_columns_do_not_depend_on_what_is_in_them(store: Store, lives: Store) -> None:
     for what in TAKEN:
-        empty = store.extract(what, RowFilter(runs=()), lambda columns, _: list(columns))
-        assert empty == lives.extract(what, RowFilter(), lambda columns, _: list(columns))
-    columns = store.extract("rows", RowFilter(), lambda columns, _: dict(columns))
+        empty = store.selections.extract(what, RowFilter(runs=()), lambda columns, _: list(columns))
+        assert empty == lives.selections.extract(
+            what, RowFilter(), lambda columns, _: list(columns)
+        )
+    columns = store.selections.extract("rows", RowFilter(), lambda columns, _: dict(columns))
     kinds = ("id", int), ("tool", str), ("expected_dx", float), ("replication_probability", float)
     assert {name: columns[name] for name, _ in kinds} == dict(kinds)
     assert Column("truncated", int) in columns.items()
@@ -185,27 +179,27 @@ def test_the_kinds_of_columns_do_not_depend_on_what_is_in_them(store: Store, liv
 
 def test_rows_are_given_one_after_the_other(rows: Store) -> None:
     """Whoever has seen enough reads no further."""
-    assert rows.extract("rows", RowFilter(), lambda _, found: next(found)[0]) == 1
-    assert rows.extract("rows", RowFilter(), lambda *_: "nothing") == "nothing"
-    assert len(rows.select_rows(RowFilter())) == 36
+    assert rows.selections.extract("rows", RowFilter(), lambda _, found: next(found)[0]) == 1
+    assert rows.selections.extract("rows", RowFilter(), lambda *_: "nothing") == "nothing"
+    assert len(rows.selections.rows(RowFilter())) == 36
 
 
 def test_the_steps_that_tried_a_row_are_those_of_all_its_trials(lives: Store) -> None:
-    trials = [trial for trial in lives.trials() if trial.steps]
-    steps = [step for trial in trials for step in lives.trial_steps(trial.id)]
+    trials = [trial for trial in lives.trials.trials() if trial.steps]
+    steps = [step for trial in trials for step in lives.trials.steps(trial.id)]
     tried = {step.affordance_id for step in steps}
-    for row in lives.select_rows(RowFilter()):
+    for row in lives.selections.rows(RowFilter()):
         expected = tuple(step for step in steps if step.affordance_id == row.id)
-        assert lives.row_steps(row.id) == expected
+        assert lives.trials.steps_of_row(row.id) == expected
         assert bool(expected) == (row.id in tried)
-    assert max(len(lives.row_steps(row)) for row in tried) > 1
-    assert lives.row_steps(10**6) == ()
+    assert max(len(lives.trials.steps_of_row(row)) for row in tried) > 1
+    assert lives.trials.steps_of_row(10**6) == ()
 
 
 def test_text_in_no_encoding_is_named(lives: Store) -> None:
-    with lives.writing() as connection:
+    with lives.database.writing() as connection:
         connection.exec_driver_sql("UPDATE affordance SET tool = CAST(x'ff41' AS TEXT)")
     with pytest.raises(DatabaseError, match="holds text that is none and that affcli did not wri"):
-        lives.select_rows(RowFilter())
+        lives.selections.rows(RowFilter())
     with pytest.raises(DatabaseError, match="holds text that is none"):
-        lives.extract("rows", RowFilter(), lambda _, found: list(found))
+        lives.selections.extract("rows", RowFilter(), lambda _, found: list(found))

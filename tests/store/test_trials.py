@@ -6,18 +6,21 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from affcli.core.trial import Counters, Outcome, Protocol, Survivors, TrialEnd, TrialRecord
+from affcli.core.choice import Reason
+from affcli.core.row_filter import Cell
+from affcli.core.specs import Counters, Protocol, TrialRecord
+from affcli.core.trial import Outcome, TrialEnd
 from affcli.errors import DatabaseError
 from affcli.store import Store, open_store, pack_robot, run_sql
-from affcli.store.query import Value
 from tests.factories import learning_spec
 from tests.store.records import (
     NOW,
-    SETTINGS,
     VERSIONS,
+    begun,
     counted,
     learned,
     robot_record,
+    session_spec,
     trial_record,
     trial_spec,
     trial_step,
@@ -27,13 +30,13 @@ LATER = "2026-01-02T04:04:05+00:00"
 STORED = Counters.STORED
 
 
-def value(store: Store, query: str) -> Value:
+def value(store: Store, query: str) -> Cell:
     """Return the one value of a query."""
     ((only,),) = run_sql(store.path, query).rows
     return only
 
 
-def counters_of(store: Store) -> list[tuple[Value, ...]]:
+def counters_of(store: Store) -> list[tuple[Cell, ...]]:
     """Return the counters of all rows by age."""
     return list(
         run_sql(store.path, "select times_used, times_successful from affordance order by id").rows
@@ -41,49 +44,49 @@ def counters_of(store: Store) -> list[tuple[Value, ...]]:
 
 
 def begin_solving(store: Store) -> int:
-    return store.begin_session("solve", 0, 1, SETTINGS, VERSIONS, NOW)
+    return begun(store)
 
 
 def test_sessions_are_begun_found_and_finished(store: Store) -> None:
     first, second = begin_solving(store), begin_solving(store)
     assert first != second
-    other = store.begin_session("break-tool", 0, 1, SETTINGS, VERSIONS, NOW)
-    assert [s.id for s in store.sessions()] == [first, second, other]
-    assert [s.id for s in store.sessions("solve")] == [first, second]
-    found = store.find_session("solve", 0, 1, SETTINGS)
+    other = begun(store, "break-tool")
+    assert [s.id for s in store.sessions.all()] == [first, second, other]
+    assert [s.id for s in store.sessions.all("solve")] == [first, second]
+    found = store.sessions.find(session_spec())
     assert found is not None
     assert (found.id, found.status, found.finished_at) == (second, "running", None)
-    assert (found.versions, found.settings, found.started_at) == (VERSIONS, SETTINGS, NOW)
-    store.finish_session(second, LATER)
-    store.finish_session(second, "2027")
-    found = store.find_session("solve", 0, 1, SETTINGS)
+    assert (found.versions, found.spec, found.started_at) == (VERSIONS, session_spec(), NOW)
+    store.sessions.finish(second, LATER)
+    store.sessions.finish(second, "2027")
+    found = store.sessions.find(session_spec())
     assert found is not None
     assert (found.status, found.finished_at) == ("done", LATER)
-    assert store.find_session("solve", 1, 1, SETTINGS) is None
-    assert store.find_session("solve", 0, 1, "{}") is None
+    for other in (session_spec(seed=1), replace(session_spec(), task_set="mine")):
+        assert store.sessions.find(other) is None
 
 
 def test_a_reproduction_begun_again_is_the_same_session(store: Store) -> None:
-    first = store.begin_session("reproduce", 7, 200, SETTINGS, VERSIONS, NOW)
-    assert store.begin_session("reproduce", 7, 200, SETTINGS, VERSIONS, LATER) == first
-    assert store.begin_session("reproduce", 7, 201, SETTINGS, VERSIONS, LATER) != first
-    assert store.begin_session("reproduce", 8, 200, SETTINGS, VERSIONS, LATER) != first
+    first = begun(store, "reproduce", seed=7, robots=200)
+    assert store.sessions.begin(session_spec("reproduce", seed=7, robots=200), {}, LATER) == first
+    assert begun(store, "reproduce", seed=7, robots=201) != first
+    assert begun(store, "reproduce", seed=8, robots=200) != first
 
 
 def test_a_step_and_the_counters_it_changes_are_saved_together(store: Store) -> None:
     run = learned(store, 9)
-    table, ids = store.affordance_table(run.id)
+    table, ids = store.learning.table(run.id)
     spec = trial_spec(counters=STORED)
-    trial = store.begin_trial(begin_solving(store), run.id, spec)
+    trial = store.trials.begin(begin_solving(store), run.id, spec)
     row = table.row(1)
     step = trial_step(row)
-    store.save_step(trial, spec, step.record, step.truth, ids[row.step])
+    store.trials.save_step(trial, spec, step.record, step.truth, ids[row.step])
     assert counters_of(store) == [(1, 1), (2, 2), (1, 1)]
     failed = trial_step(counted(row, step.record), 2, seen=(0.0, 0.0))
-    store.save_step(trial, spec, failed.record, failed.truth, ids[row.step])
+    store.trials.save_step(trial, spec, failed.record, failed.truth, ids[row.step])
     assert counters_of(store) == [(1, 1), (3, 2), (1, 1)]
-    assert list(store.affordance_table(run.id)[0])[1].times_used == 3
-    assert [(s.times_used_after, s.times_successful_after) for s in store.trial_steps(trial)] == [
+    assert list(store.learning.table(run.id)[0])[1].times_used == 3
+    assert [(s.times_used_after, s.times_successful_after) for s in store.trials.steps(trial)] == [
         (2, 2),
         (3, 2),
     ]
@@ -91,28 +94,28 @@ def test_a_step_and_the_counters_it_changes_are_saved_together(store: Store) -> 
 
 def test_a_trial_from_the_table_as_learned_leaves_the_stored_counters(store: Store) -> None:
     run = learned(store, 9)
-    table, ids = store.affordance_table(run.id)
+    table, ids = store.learning.table(run.id)
     session = begin_solving(store)
     spec = trial_spec()
-    trial = store.begin_trial(session, run.id, spec)
+    trial = store.trials.begin(session, run.id, spec)
     step = trial_step(table.row(0))
-    store.save_step(trial, spec, step.record, step.truth, ids[3])
-    store.save_trials(session, run.id, [trial_record(trial_spec(3), list(table))], ids)
+    store.trials.save_step(trial, spec, step.record, step.truth, ids[3])
+    store.trials.save_all(session, run.id, [trial_record(trial_spec(3), list(table))], ids)
     assert counters_of(store) == [(1, 1)] * 3
 
 
 def test_counters_that_another_process_changed_stop_the_trial(store: Store) -> None:
     run = learned(store, 9)
-    table, ids = store.affordance_table(run.id)
+    table, ids = store.learning.table(run.id)
     spec = trial_spec(counters=STORED)
-    trial = store.begin_trial(begin_solving(store), run.id, spec)
+    trial = store.trials.begin(begin_solving(store), run.id, spec)
     step = trial_step(table.row(0))
     with open_store(store.path, create=False, write=True) as other:
-        other_trial = other.begin_trial(begin_solving(other), run.id, spec)
-        other.save_step(other_trial, spec, step.record, step.truth, ids[3])
+        other_trial = other.trials.begin(begin_solving(other), run.id, spec)
+        other.trials.save_step(other_trial, spec, step.record, step.truth, ids[3])
     with pytest.raises(DatabaseError, match="another process changed the counters of affordance 1"):
-        store.save_step(trial, spec, step.record, step.truth, ids[3])
-    assert store.trial_steps(trial) == ()
+        store.trials.save_step(trial, spec, step.record, step.truth, ids[3])
+    assert store.trials.steps(trial) == ()
     assert counters_of(store) == [(2, 2), (1, 1), (1, 1)]
 
 
@@ -124,16 +127,16 @@ def test_counters_and_steps_hold_together(
     store: Store, uses: list[tuple[int, bool, Counters]]
 ) -> None:
     """A stored counter is 1 plus what the steps of trials with stored counters add to it."""
-    runs = store.learning_runs()
+    runs = store.learning.runs()
     run = runs[0] if runs else learned(store, 9)
-    _, ids = store.affordance_table(run.id)
+    _, ids = store.learning.table(run.id)
     for position, success, counters in uses:
-        table, _ = store.affordance_table(run.id, as_learned=counters is Counters.AS_LEARNED)
+        table, _ = store.learning.table(run.id, as_learned=counters is Counters.AS_LEARNED)
         spec = trial_spec(counters=counters)
-        trial = store.begin_trial(begin_solving(store), run.id, spec)
+        trial = store.trials.begin(begin_solving(store), run.id, spec)
         row = table.row(position)
         step = trial_step(row, seen=(0.0, 4.0) if success else (0.0, 0.0))
-        store.save_step(trial, spec, step.record, step.truth, ids[row.step])
+        store.trials.save_step(trial, spec, step.record, step.truth, ids[row.step])
     assert (
         value(
             store,
@@ -150,21 +153,20 @@ def test_counters_and_steps_hold_together(
 
 def test_a_trial_keeps_how_it_ended(store: Store) -> None:
     run = learned(store)
-    trial = store.begin_trial(begin_solving(store), run.id, trial_spec())
-    assert store.outcomes() == ()  # it has not ended
-    store.end_trial(trial, TrialEnd(Outcome.NO_ROW, 3, 41.5, Survivors(9, 2, 0, 0)))
-    (result,) = store.outcomes()
+    trial = store.trials.begin(begin_solving(store), run.id, trial_spec())
+    assert store.results.trials() == ()  # it has not ended
+    store.trials.end(trial, TrialEnd(Outcome.NO_ROW, 3, 41.5, (Reason("probable", 0, 0.5),)))
+    (result,) = store.results.trials()
     assert (result.outcome, result.steps, result.robot_seconds) == (Outcome.NO_ROW, 3, 41.5)
-    assert run_sql(
-        store.path,
-        "select last_rows_consistent, last_rows_probable, last_rows_reachable, last_rows_nearest"
-        " from trial",
-    ).rows == ((9, 2, 0, 0),)
+    assert store.trials.trial(trial).last_reasons == (Reason("probable", 0, 0.5),)
+    assert value(store, "select last_reasons from trial") == (
+        '[{"name":"probable","rows":0,"value":0.5}]'
+    )
 
 
 def test_every_step_is_kept_with_the_row_it_tried(store: Store) -> None:
     run = learned(store, 9)
-    table, ids = store.affordance_table(run.id)
+    table, ids = store.learning.table(run.id)
     row = replace(table.row(2), times_used=4, times_successful=3)
     steps = (
         trial_step(row, 1, seen=(1.0, 3.0)),
@@ -173,15 +175,16 @@ def test_every_step_is_kept_with_the_row_it_tried(store: Store) -> None:
     )
     end = TrialEnd(Outcome.STEP_LIMIT, 3, 20.0)
     session = begin_solving(store)
-    store.save_trials(session, run.id, [TrialRecord(trial_spec(), steps, end)], ids)
-    (result,) = store.outcomes(session_id=session)
-    stored = store.trial_steps(result.id)
+    store.trials.save_all(session, run.id, [TrialRecord(trial_spec(), steps, end)], ids)
+    (result,) = store.results.trials(session_id=session)
+    stored = store.trials.steps(result.id)
     assert [s.row for s in stored] == [row] * 3
     for kept, (record, _, lost) in zip(stored, steps, strict=True):
-        assert (kept.number, kept.clock, kept.survivors) == (
-            *(record.number, record.clock),
-            record.survivors,
+        assert (kept.number, kept.clock, kept.reasons, kept.regrasped) == (
+            *(record.number, record.clock, record.reasons, record.regrasped),
         )
+        moved = record.execution or record.placing
+        assert (kept.wrist_start, kept.wrist_end) == (moved.wrist_start, moved.wrist_end)
         assert (kept.affordance_id, kept.replicated, kept.died) == (
             *(ids[row.step], record.replicated),
             record.died,
@@ -213,24 +216,24 @@ def test_every_step_is_kept_with_the_row_it_tried(store: Store) -> None:
 def test_the_same_trial_is_not_stored_twice_in_a_session(store: Store) -> None:
     run = learned(store)
     session = begin_solving(store)
-    store.begin_trial(session, run.id, trial_spec())
+    store.trials.begin(session, run.id, trial_spec())
     with pytest.raises(Exception, match="UNIQUE constraint failed: trial"):
-        store.begin_trial(session, run.id, trial_spec())
-    store.begin_trial(begin_solving(store), run.id, trial_spec())
+        store.trials.begin(session, run.id, trial_spec())
+    store.trials.begin(begin_solving(store), run.id, trial_spec())
 
 
 def begin_reproducing(store: Store, robots: int = 2) -> int:
-    return store.begin_session("reproduce", 0, robots, SETTINGS, VERSIONS, NOW)
+    return begun(store, "reproduce", robots=robots)
 
 
 def test_a_robot_is_saved_once_and_whole(store: Store) -> None:
     session = begin_reproducing(store)
-    assert store.saved_robots(session) == frozenset()
-    assert store.save_robot(session, robot_record(1), VERSIONS, NOW)
-    assert not store.save_robot(session, robot_record(1), VERSIONS, LATER)
-    assert store.save_robot(session, robot_record(0), VERSIONS, NOW)
-    assert store.saved_robots(session) == {0, 1}
-    runs = store.learning_runs(session_id=session)
+    assert store.sessions.saved_robots(session) == frozenset()
+    assert store.sessions.save_robot(session, robot_record(1), VERSIONS, NOW)
+    assert not store.sessions.save_robot(session, robot_record(1), VERSIONS, LATER)
+    assert store.sessions.save_robot(session, robot_record(0), VERSIONS, NOW)
+    assert store.sessions.saved_robots(session) == {0, 1}
+    runs = store.learning.runs(session_id=session)
     assert [(r.spec.tool, r.spec.robot, r.behaviors, r.rows) for r in runs] == [
         ("stick", 1, 6, 2),
         ("t-hook", 1, 6, 2),
@@ -242,18 +245,18 @@ def test_a_robot_is_saved_once_and_whole(store: Store) -> None:
     }
     assert value(store, "select count(*) from trial") == 10
     assert value(store, "select count(*) from step") == 16
-    assert store.learning_runs() == ()
+    assert store.learning.runs() == ()
 
 
 def test_a_robot_of_another_session_is_another_robot(store: Store) -> None:
     first, second = begin_reproducing(store, 2), begin_reproducing(store, 3)
-    assert store.save_robot(first, robot_record(0), VERSIONS, NOW)
-    assert store.save_robot(second, robot_record(0), VERSIONS, NOW)
+    assert store.sessions.save_robot(first, robot_record(0), VERSIONS, NOW)
+    assert store.sessions.save_robot(second, robot_record(0), VERSIONS, NOW)
     alone = learned(store, spec=learning_spec("stick", behaviors=6))
     assert alone.session_id is None
 
 
-def everything(store: Store) -> list[tuple[tuple[Value, ...], ...]]:
+def everything(store: Store) -> list[tuple[tuple[Cell, ...], ...]]:
     """Return all rows of all tables."""
     tables = ("session", "learning_run", "behavior", "affordance", "trial", "step")
     return [run_sql(store.path, f"select * from {table}").rows for table in tables]
@@ -261,12 +264,12 @@ def everything(store: Store) -> list[tuple[tuple[Value, ...], ...]]:
 
 def test_a_packed_robot_is_saved_as_the_robot_itself(store: Store, empty_database: object) -> None:
     session = begin_reproducing(store)
-    store.save_robot(session, robot_record(0), VERSIONS, NOW)
+    store.sessions.save_robot(session, robot_record(0), VERSIONS, NOW)
     plain = everything(store)
-    with store.writing() as connection:
+    with store.database.writing() as connection:
         for table in ("step", "trial", "affordance", "behavior", "learning_run"):
             connection.exec_driver_sql(f"DELETE FROM {table}")
-    store.save_robot(session, pack_robot(robot_record(0)), VERSIONS, NOW)
+    store.sessions.save_robot(session, pack_robot(robot_record(0)), VERSIONS, NOW)
     assert everything(store) == plain
 
 
@@ -275,60 +278,60 @@ def test_a_robot_is_saved_whole_or_not_at_all(store: Store) -> None:
     record = robot_record(0)
     torn = replace(record, trials=(*record.trials, record.trials[-1]))
     with pytest.raises(Exception, match="UNIQUE constraint failed"):
-        store.save_robot(session, torn, VERSIONS, NOW)
-    assert store.saved_robots(session) == frozenset()
+        store.sessions.save_robot(session, torn, VERSIONS, NOW)
+    assert store.sessions.saved_robots(session) == frozenset()
     assert [len(rows) for rows in everything(store)] == [1, 0, 0, 0, 0, 0]
 
 
 def test_sums_for_reports(store: Store) -> None:
     session = begin_reproducing(store)
     for robot in range(2):
-        store.save_robot(session, robot_record(robot), VERSIONS, NOW)
+        store.sessions.save_robot(session, robot_record(robot), VERSIONS, NOW)
     whole, broken = Protocol.EXTENSION_OF_REACH, Protocol.TOOL_ADAPTATION
     assert [
         (c.robot, c.protocol, c.tool, c.shape, c.goal, c.trials, c.solved)
-        for c in store.success_counts(session)
+        for c in store.results.success_counts(session)
     ] == [
         (robot, *cell)
         for robot in range(2)
         for cell in (
-            (whole, "stick", "stick", 1, 2, 1),
-            (whole, "t-hook", "t-hook", 1, 2, 1),
-            (broken, "t-hook", "l-hook", 1, 1, 1),
+            (whole, "stick", "stick", "1", 2, 1),
+            (whole, "t-hook", "t-hook", "1", 2, 1),
+            (broken, "t-hook", "l-hook", "1", 1, 1),
         )
     ]
-    assert [(c.protocol, c.outcome, c.trials) for c in store.outcome_counts([session])] == [
+    assert [(c.protocol, c.outcome, c.trials) for c in store.results.outcome_counts([session])] == [
         (whole, Outcome.NO_ROW, 4),
         (whole, Outcome.SOLVED, 4),
         (broken, Outcome.SOLVED, 2),
     ]
-    assert store.outcome_counts([]) == ()
+    assert store.results.outcome_counts([]) == ()
     uses = [
         (u.robot, u.step, u.lost, u.trials, u.tries, u.successes, u.deaths)
-        for u in store.row_uses(session)
+        for u in store.results.row_uses(session)
     ]
     assert uses == [
         use
         for robot in range(2)
         for use in ((robot, 3, True, 1, 1, 0, 1), (robot, 6, False, 1, 1, 1, 0))
     ]
-    assert store.row_uses(session)[0].offset == (0.5, 14.0)
-    assert [u.tries for u in store.row_uses(session, whole)] == [2, 1] * 4
+    assert store.results.row_uses(session)[0].offset == (0.5, 14.0)
+    assert [u.tries for u in store.results.row_uses(session, whole)] == [2, 1] * 4
 
 
 def test_invalid_trials_count_for_nothing(store: Store) -> None:
     run = learned(store)
-    _, ids = store.affordance_table(run.id)
+    _, ids = store.learning.table(run.id)
     session = begin_solving(store)
     ended = [
         trial_record(trial_spec(1, start), (), outcome)
         for start, outcome in enumerate((Outcome.SOLVED, Outcome.INVALID, Outcome.NO_ROW), 1)
     ]
-    store.save_trials(session, run.id, ended, ids)
-    store.begin_trial(session, run.id, trial_spec(1, 4))
-    (count,) = store.success_counts(session)
+    store.trials.save_all(session, run.id, ended, ids)
+    store.trials.begin(session, run.id, trial_spec(1, 4))
+    (count,) = store.results.success_counts(session)
     assert (count.trials, count.solved) == (2, 1)
-    assert len(store.outcomes()) == 3
+    assert len(store.results.trials()) == 3
 
 
 def test_outcomes_can_be_narrowed(store: Store) -> None:
@@ -336,14 +339,14 @@ def test_outcomes_can_be_narrowed(store: Store) -> None:
         tool: learned(store, spec=learning_spec(tool, behaviors=9)) for tool in ("stick", "t-hook")
     }
     solving = begin_solving(store)
-    breaking = store.begin_session("break-tool", 0, 1, SETTINGS, VERSIONS, NOW)
+    breaking = begun(store, "break-tool")
     for session in (solving, breaking):
         for tool, run in runs.items():
-            store.save_trials(session, run.id, [trial_record(trial_spec(tool=tool), ())], {})
-    assert len(store.outcomes()) == 4
-    assert {r.session_kind for r in store.outcomes(kind="solve")} == {"solve"}
-    assert {r.tool for r in store.outcomes(tool="stick")} == {"stick"}
-    (one,) = store.outcomes(session_id=breaking, tool="t-hook")
+            store.trials.save_all(session, run.id, [trial_record(trial_spec(tool=tool), ())], {})
+    assert len(store.results.trials()) == 4
+    assert {r.session_kind for r in store.results.trials(kind="solve")} == {"solve"}
+    assert {r.tool for r in store.results.trials(tool="stick")} == {"stick"}
+    (one,) = store.results.trials(session_id=breaking, tool="t-hook")
     assert (one.session_kind, one.run_id, one.protocol) == (
         *("break-tool", runs["t-hook"].id),
         Protocol.EXTENSION_OF_REACH,
@@ -352,8 +355,8 @@ def test_outcomes_can_be_narrowed(store: Store) -> None:
 
 def test_behavior_groups_count_tries_and_rows(store: Store) -> None:
     run = learned(store, 9)
-    (group,) = store.behavior_groups(run.id)
+    (group,) = store.results.behavior_groups(run.id)
     assert (str(group.call), group.tried, group.rows) == ("extend arm 5", 9, 3)
     assert (group.mean_movement, group.mean_dx, group.mean_dy) == (4.0, 0.0, 4.0)
-    empty = store.begin_learning(learning_spec(seed=9), VERSIONS, NOW)
-    assert store.behavior_groups(empty.id) == ()
+    empty = store.learning.begin(learning_spec(seed=9), VERSIONS, NOW)
+    assert store.results.behavior_groups(empty.id) == ()

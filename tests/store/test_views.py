@@ -6,16 +6,18 @@ from pathlib import Path
 
 import pytest
 
-from affcli.core.behavior import SLIDE_ARM_LEFT, BehaviorCall, ExecutionStatus
+from affcli.behaviors.moving import SLIDE_ARM_LEFT
+from affcli.core.behavior import BehaviorCall, ExecutionStatus
 from affcli.core.observation import Observation
 from affcli.core.trial import Truth
 from affcli.store import Store, run_sql
-from affcli.store.identity import APPLICATION_ID, RELATIONS
 from affcli.store.migrate import migrations_folder
-from affcli.store.tables import TABLES
+from affcli.store.revision import APPLICATION_ID, RELATIONS
+from affcli.store.tables import TABLES as BY_NAME
 from tests.factories import BINDING, learning_spec
 from tests.store.records import NOW, VERSIONS, learning_step
 
+TABLES = BY_NAME.values()
 START = Observation(5.744, 29.475, 0.0, -3.326, 16.392, 0.0, 241.4, 120.5, 16.1, 196.5, 39.0, 38.2)
 END = Observation(2.744, 33.475, 0.0, -0.004, 16.9, 0.0, 241.8, 120.1, 18.6, 203.0, 38.5, 37.1)
 
@@ -38,8 +40,8 @@ def row(store: Store) -> Store:
         times_successful=3,
     )
     step = replace(record, execution=execution, start=START, end=END, affordance=affordance)
-    run = store.begin_learning(learning_spec(), VERSIONS, NOW)
-    store.append_learning(run.id, 0, [(step, Truth(*truth))], {}, 1.0, done=True, now=NOW)
+    run = store.learning.begin(learning_spec(), VERSIONS, NOW)
+    store.learning.append(run.id, 0, [(step, Truth(*truth))], {}, 1.0, done=True, now=NOW)
     return store
 
 
@@ -91,6 +93,9 @@ def test_affordance_wide_has_every_component_in_a_column(row: Store) -> None:
         "times_successful": 3,
         "replication_probability": 0.75,
         "truncated": 1,
+        "wrist_angle": 0.25,
+        "travel_x": 0.0,
+        "travel_y": 5.0,
     }
 
 
@@ -118,14 +123,17 @@ def test_the_schema_is_what_the_code_expects(empty_database: Path) -> None:
 
 @pytest.mark.parametrize(("used", "successful"), [(0, 0), (1, 2), (3, -1), (-1, -1)])
 def test_counters_that_cannot_be_are_refused(used: int, successful: int, row: Store) -> None:
-    with pytest.raises(Exception, match="CHECK constraint failed"), row.writing() as connection:
+    with (
+        pytest.raises(Exception, match="CHECK constraint failed"),
+        row.database.writing() as connection,
+    ):
         connection.exec_driver_sql(
             f"UPDATE affordance SET times_used = {used}, times_successful = {successful}"
         )
 
 
 def test_references_are_kept(row: Store) -> None:
-    with pytest.raises(Exception, match="FOREIGN KEY"), row.writing() as connection:
+    with pytest.raises(Exception, match="FOREIGN KEY"), row.database.writing() as connection:
         connection.exec_driver_sql("DELETE FROM learning_run")
 
 

@@ -4,9 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from affcli.store import Fact, database_info, place_facts
-from affcli.store import place as place_module
-from affcli.store.place import file_system
+from affcli.store import Fact, database_info, environment, environment_facts
+from affcli.store.environment import file_system
 
 MOUNTS = """\
 /dev/sda1 / ext4 rw 0 0
@@ -17,7 +16,7 @@ server:/home /home nfs4 rw 0 0
 
 
 def facts(path: Path) -> dict[str, Fact]:
-    return {fact.what: fact for fact in place_facts(path)}
+    return {fact.what: fact for fact in environment_facts(path)}
 
 
 @pytest.mark.fault(17)
@@ -41,7 +40,7 @@ def test_here_all_is_well(database: Path) -> None:
 def test_a_network_file_system_is_pointed_out(
     database: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(place_module, "file_system", lambda folder, mounts: "nfs4")
+    monkeypatch.setattr(environment, "file_system", lambda folder, mounts: "nfs4")
     found = facts(database)["file system"]
     assert found.state == "look"
     assert "keep the database on a local disk" in found.remedy
@@ -51,11 +50,11 @@ def test_a_network_file_system_is_pointed_out(
 def test_a_write_ahead_log_that_this_sqlite_cannot_be_trusted_with(
     database: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(place_module, "journal_mode_for", lambda version: "delete")
+    monkeypatch.setattr(environment, "journal_mode_for", lambda version: "delete")
     assert "not a write-ahead log" in facts(database)["SQLite"].value
     info = database_info(database)
     changed = type(info)(**{f: getattr(info, f) for f in info.__slots__} | {"journal_mode": "wal"})
-    monkeypatch.setattr(place_module, "database_info", lambda path: changed)
+    monkeypatch.setattr(environment, "database_info", lambda path: changed)
     assert facts(database)["database"].state == "look"
 
 
@@ -72,5 +71,5 @@ def test_what_must_be_mended_says_how(database: Path, tmp_path: Path) -> None:
 
 
 def test_little_room_is_pointed_out(database: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(place_module, "LITTLE_SPACE", 10**18)
+    monkeypatch.setattr(environment, "LITTLE_SPACE", 10**18)
     assert facts(database)["disk"].state == "look"

@@ -1,0 +1,265 @@
+"""Databases of every past revision, made by the affcli of their time: upgraded, and then used."""
+
+import json
+import shutil
+import sqlite3
+from collections.abc import Iterator
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from affcli.behaviors.moving import paper_repertoire
+from affcli.config import load_settings
+from affcli.core.choice import Reason
+from affcli.core.geometry import Point
+from affcli.core.identity import Component
+from affcli.core.records import ChangedPart, TrialInfo
+from affcli.core.specs import LearningSpec
+from affcli.core.workspace import TaskLayout
+from affcli.lab.learning import learn
+from affcli.lab.replaying import replay_run, replay_trial
+from affcli.lab.run_parts import RunParts
+from affcli.simulation.tasks.extension_of_reach import extension_of_reach
+from affcli.store import Store, check, open_store, run_sql, upgrade
+from affcli.store.revision import REVISION
+
+DATABASES = Path(__file__).parent / "databases"
+PAST = [f"{k:04}" for k in range(1, int(REVISION))]
+KEPT = ("session", "learning_run", "behavior", "affordance", "trial", "step")
+LEARNED: dict[str, tuple[tuple[str, tuple[str, ...], tuple[str, int, int]], ...]] = {
+    "0001": (("t-hook", ("sensor.position_noise=0.06", "sensor.color_noise=2"), ("noisy", 5, 60)),),
+    "0002": (
+        ("t-hook", ("trial.max_steps=6",), ("noisy", 5, 60)),
+        ("stick", (), ("camera", 5, 6)),
+    ),
+    "0003": (
+        ("t-hook", ("trial.max_steps=5",), ("noisy", 5, 60)),
+        ("l-hook", (), ("noisy", 2, 16)),
+        ("stick", (), ("camera", 5, 3)),
+        ("l-stick", (), ("noisy", 7, 24)),
+    ),
+}
+"""The runs of each database: tool, settings, then sensor, seed and behaviors of the command."""
+CASES = [(revision, *run) for revision, runs in LEARNED.items() for run in runs]
+
+
+def old_database(revision: str, folder: Path) -> Path:
+    """Return a database of a past revision, for this test alone."""
+    path = Path(shutil.copy(DATABASES / f"{revision}.db", folder / "old.db"))
+    path.chmod(0o644)
+    return path
+
+
+def rows(path: Path, text: str) -> list[tuple[Any, ...]]:
+    """Run a query without affcli."""
+    with closing(sqlite3.connect(path)) as driver:
+        return driver.execute(text).fetchall()
+
+
+@pytest.fixture(scope="module")
+def upgraded(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """The databases, brought to this revision."""
+    paths = {r: old_database(r, tmp_path_factory.mktemp(r)) for r in PAST}
+    for revision, path in paths.items():
+        assert upgrade(path) == (revision, REVISION)
+    return paths
+
+
+@pytest.fixture(params=PAST)
+def stored(request: pytest.FixtureRequest, upgraded: dict[str, Path]) -> Iterator[Store]:
+    """Each of them, open for reading."""
+    with open_store(upgraded[request.param], create=False, write=False) as store:
+        yield store
+
+
+def asked(tool: str, settings: tuple[str, ...], how: tuple[str, int, int]) -> LearningSpec:
+    """Return what `affcli learn` makes of a command."""
+    sensor, seed, behaviors = how
+    parts = RunParts.chosen(load_settings(None, [*settings, f"sensor.kind={sensor}"]))
+    return parts.spec(tool, seed, 0, None, behaviors)
+
+
+@pytest.mark.parametrize("revision", PAST)
+def test_nothing_is_lost(revision: str, upgraded: dict[str, Path]) -> None:
+    """Every record is there, and the views read as before."""
+    old, new = DATABASES / f"{revision}.db", upgraded[revision]
+    for name in KEPT:
+        count = f"SELECT count(*) FROM {name}"
+        assert rows(new, count) == rows(old, count) > [(0,)]
+    for view, columns in (("affordance_table", "*"), ("affordance_wide", _columns(old))):
+        query = f"SELECT {columns} FROM {view} ORDER BY id"
+        assert rows(new, query) == rows(old, query)
+    assert [finding for finding in check(new) if finding.wrong] == []
+
+
+def _columns(old: Path) -> str:
+    """Return the columns of the view affordance_wide as it was."""
+    return ", ".join(row[1] for row in rows(old, "PRAGMA table_info(affordance_wide)"))
+
+
+@pytest.mark.parametrize(("revision", "tool", "settings", "how"), CASES)
+def test_the_same_command_finds_the_run(
+    revision: str,
+    tool: str,
+    settings: tuple[str, ...],
+    how: tuple[str, int, int],
+    upgraded: dict[str, Path],
+) -> None:
+    """What the migration spells out is what the code makes of the same command today."""
+    spec = asked(tool, settings, how)
+    with open_store(upgraded[revision], create=False, write=False) as store:
+        found = store.learning.find(spec)
+        assert found is not None
+        assert found.spec == spec
+        assert (found.spec.held.key, found.spec.key) == (spec.held.key, spec.key)
+        assert found.spec.repertoire == paper_repertoire()
+
+
+def test_a_default_that_changed_since_is_named(upgraded: dict[str, Path]) -> None:
+    """The sensor was noisier when the first database was made."""
+    spec = asked("t-hook", (), ("noisy", 5, 60))
+    with open_store(upgraded["0001"], create=False, write=False) as store:
+        assert store.learning.find(spec) is None
+        (alike,) = store.learning.find_alike(spec)
+        assert alike.run.id == 1
+        assert alike.changed == (
+            ChangedPart("sensor.color_noise", 2.0, None),
+            ChangedPart("sensor.position_noise", 0.06, None),
+        )
+        assert store.learning.find_alike(alike.run.spec) == ()
+        assert store.learning.find_alike(replace(spec, seed=6)) == ()
+
+
+def test_a_later_version_of_the_world_is_named(upgraded: dict[str, Path]) -> None:
+    spec = replace(asked("l-hook", (), ("noisy", 2, 16)), world=Component("table", version=2))
+    with open_store(upgraded["0003"], create=False, write=False) as store:
+        (alike,) = store.learning.find_alike(spec)
+        assert alike.changed == (ChangedPart("world", "table", "table@2"),)
+
+
+def test_trials_have_their_task_and_planner_by_value(stored: Store) -> None:
+    tasks = {(t.goal.name, t.start_name): t for t in extension_of_reach(TaskLayout())}
+    trials = stored.trials.trials()
+    for trial in trials:
+        spec = trial.spec
+        assert spec.task == tasks[spec.goal, spec.start]
+        assert (spec.planner, spec.world) == (Component("nested-query"), Component("table"))
+        held = {"t-hook", "l-hook", "stick"}
+        assert spec.shape in held
+        assert spec.held.parts
+        assert trial.learned == stored.learning.run(trial.run_id).spec
+    assert {trial.session_kind for trial in trials} == {"solve", "break-tool"}
+    assert {session.spec.task_set for session in stored.sessions.all()} == {"extension-of-reach"}
+
+
+def test_the_rows_left_by_each_search_are_the_reasons_of_a_step(stored: Store) -> None:
+    trial = next(t for t in stored.trials.trials() if t.steps)
+    for step in stored.trials.steps(trial.id):
+        names = [(reason.name, reason.value) for reason in step.reasons]
+        assert names == [
+            *(("consistent", None), ("probable", 0.5)),
+            *(("reachable", None), ("nearest", 0.2)),
+        ]
+        left = [reason.rows for reason in step.reasons]
+        assert left == sorted(left, key=lambda count: -(count or 0))
+        assert isinstance(step.reasons[0], Reason)
+
+
+def test_a_row_has_the_travel_of_its_wrist(stored: Store) -> None:
+    for run in stored.learning.runs():
+        for row in stored.learning.rows(run.id):
+            distance = row.row.exploratory["offset_distance"]
+            assert row.row.wrist_angle == 0.0
+            whole = abs(row.row.travel.x) + abs(row.row.travel.y)
+            assert whole == pytest.approx(distance) or row.row.truncated
+
+
+@pytest.mark.parametrize("revision", PAST)
+def test_a_learning_run_is_replayed_equal(revision: str, upgraded: dict[str, Path]) -> None:
+    with open_store(upgraded[revision], create=False, write=False) as store:
+        run = store.learning.run(1)
+        last = 20
+        done = list(replay_run(store, run, last, last))
+        assert [one.differences for one in done] == [()]
+
+
+def _replayable(trials: tuple[TrialInfo, ...]) -> list[int]:
+    """Return a trial of each protocol and kind of counters."""
+    kinds = {(t.spec.protocol, t.spec.counters, t.run_id): t.id for t in reversed(trials)}
+    noisy = {t.id for t in trials if t.spec.sensor == "noisy"}
+    return sorted(noisy & set(kinds.values()))
+
+
+@pytest.mark.parametrize("revision", PAST)
+def test_trials_are_replayed_equal(revision: str, upgraded: dict[str, Path]) -> None:
+    """The planner that the record names chooses the same rows for the same reasons."""
+    with open_store(upgraded[revision], create=False, write=False) as store:
+        chosen = _replayable(store.trials.trials())
+        assert len(chosen) > 1
+        for trial in chosen:
+            assert replay_trial(store, trial).differences == ()
+
+
+def test_an_interrupted_run_goes_on_as_if_it_had_not_been(tmp_path: Path) -> None:
+    """From a checkpoint of revision 0003: the same rows as when it is run in one go."""
+    path, now = old_database("0003", tmp_path), "2026-01-02T03:04:05+00:00"
+    upgrade(path)
+    with open_store(path, create=False, write=True) as store:
+        (run,) = store.learning.runs(status="running")
+        learned = learn(store, run.spec, lambda: now)
+        assert learned.new
+        assert (learned.info.id, learned.info.behaviors) == (run.id, 24)
+        with open_store(tmp_path / "new.db", create=True, write=True) as fresh:
+            whole = learn(fresh, run.spec, lambda: now).info
+            assert list(fresh.learning.table(whole.id)[0]) == list(store.learning.table(run.id)[0])
+
+
+def test_runs_that_became_equal_are_told_apart(tmp_path: Path) -> None:
+    """One was stored before a settings key was known, and again with it: both are kept."""
+    path = old_database("0003", tmp_path)
+    with closing(sqlite3.connect(path, isolation_level=None)) as driver:
+        ((text,),) = driver.execute("SELECT settings FROM learning_run WHERE id = 2").fetchall()
+        settings = json.loads(text)
+        del settings["camera"]
+        driver.execute(
+            "INSERT INTO learning_run SELECT 9, session_id, tool, seed, robot, hours, "
+            "behaviors_limit, ?, 'other', versions, status, 0, 0, 0, 0, 0.0, NULL, started_at, "
+            "finished_at, calibration FROM learning_run WHERE id = 2",
+            [json.dumps(settings)],
+        )
+    upgrade(path)
+    with open_store(path, create=False, write=False) as store:
+        found = store.learning.find(asked("l-hook", (), ("noisy", 2, 16)))
+        assert found is not None
+        assert found.id == 2
+        assert store.learning.run(9).spec == found.spec
+    ((first,), (other,)) = run_sql(
+        path, "SELECT key FROM learning_run WHERE id IN (2, 9) ORDER BY id"
+    ).rows
+    assert other == f"{first}-9"
+
+
+def test_a_tool_of_another_name_has_no_shape(tmp_path: Path) -> None:
+    """It can be listed and its rows shown."""
+    path = old_database("0003", tmp_path)
+    with closing(sqlite3.connect(path, isolation_level=None)) as driver:
+        driver.execute("UPDATE learning_run SET tool = 'rake' WHERE id = 2")
+    upgrade(path)
+    with open_store(path, create=False, write=False) as store:
+        run = store.learning.run(2)
+        assert (run.spec.tool, run.spec.held.parts) == ("rake", ())
+        assert len(store.learning.table(2)[0]) == run.rows
+    assert run_sql(path, "SELECT tool_key FROM learning_run WHERE id = 2").rows == ((None,),)
+
+
+def test_numbers_come_back_exactly(stored: Store) -> None:
+    """Floats of a tool, of settings and of a task are those that the code computes."""
+    for key, name, text in run_sql(stored.path, "SELECT * FROM tool").rows:
+        own = asked(str(name), (), ("noisy", 0, 1)).held
+        assert (key, json.loads(str(text))) == (own.key, own.canonical())
+    assert Point(*run_sql(stored.path, "SELECT start_x, start_y FROM trial").rows[0]) in {
+        task.start for task in extension_of_reach(TaskLayout())
+    }
