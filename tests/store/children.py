@@ -95,7 +95,7 @@ def die_while_writing(path: Path) -> None:
         connection.exec_driver_sql("PRAGMA cache_spill = 1")
         connection.exec_driver_sql("PRAGMA cache_size = 1")
         connection.exec_driver_sql(
-            "UPDATE learning_run SET settings = hex(randomblob(20000)), status = 'torn'"
+            "UPDATE learning_run SET settings = hex(randomblob(20000)), status = 'running'"
         )
         connection.exec_driver_sql("UPDATE affordance SET binding_params = hex(randomblob(3000))")
         assert Path(f"{path}-journal").stat().st_size > 0

@@ -22,9 +22,19 @@ from affcli.core.specs import (
     SessionSpec,
     TrialRecord,
     TrialSpec,
+    VerificationSpec,
 )
 from affcli.core.task import GoalRegion, Task
-from affcli.core.trial import BabblingRecord, Outcome, StepRecord, TrialEnd, TrialStep, Truth
+from affcli.core.trial import (
+    Attempt,
+    BabblingRecord,
+    Outcome,
+    StepRecord,
+    TrialEnd,
+    TrialStep,
+    Truth,
+)
+from affcli.core.verification import ReplicationRecord
 from affcli.store import Store
 from tests.factories import BINDING, EXTEND_5, learning_spec, observation
 
@@ -168,8 +178,20 @@ def trial_step(
     return TrialStep(record, Truth(Pose(3.0, 25.1), Pose(3.1, 29.2)), lost)
 
 
-def counted(row: Affordance, step: StepRecord) -> Affordance:
-    """Return `row` with the counters it has after `step`."""
+def replication(row: Affordance, number: int = 1) -> tuple[ReplicationRecord, Truth | None]:
+    """Return a try of `row` in a verification that replicates it."""
+    step = trial_step(row, number)
+    return ReplicationRecord(**step.record.by_name(), number=number, clock=7.5 * number), step.truth
+
+
+def verification_spec(shape: str = "l-hook", tries: int = 4) -> VerificationSpec:
+    """Return a verification of a T-hook's table."""
+    held = learning_spec(shape).held
+    return VerificationSpec("t-hook", held, 0, 0, "noisy", tries, until_verdict=False)
+
+
+def counted(row: Affordance, step: Attempt) -> Affordance:
+    """Return `row` with the counters it has after one use."""
     used, successful = step.times_used_after, step.times_successful_after
     return replace(row, times_used=used, times_successful=successful)
 

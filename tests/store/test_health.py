@@ -5,12 +5,22 @@ from pathlib import Path
 
 import pytest
 
+from affcli.core.specs import Counters
+from affcli.core.trial import Outcome, TrialEnd
+from affcli.core.verification import Verdict
 from affcli.errors import DatabaseError
-from affcli.lab.learning import learn
-from affcli.lab.solving import solve
-from affcli.lab.verifying import verification_spec, verify
 from affcli.store import Store, check, open_store
-from tests.lab.quick import now, spec_of
+from tests.store.records import (
+    NOW,
+    VERSIONS,
+    begun,
+    counted,
+    learned,
+    replication,
+    trial_spec,
+    trial_step,
+    verification_spec,
+)
 
 
 @pytest.fixture(scope="module")
@@ -18,10 +28,23 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A database with a learned tool, whose counters trials and a verification have changed."""
     path = tmp_path_factory.mktemp("health") / "sound.db"
     with open_store(path, create=True, write=True) as store:
-        run = learn(store, spec_of(behaviors=300), now).info
-        list(solve(store, [run], 2, [1, 2], 0, now))
-        spec = verification_spec(run, "l-hook", 0, None, 20, until_verdict=False)
-        list(verify(store, run, spec, now, update=True))
+        run = learned(store, 30)
+        table, ids = store.learning.table(run.id)
+        session, row = begun(store), table.row(0)
+        for start in (1, 2):
+            spec = trial_spec(start=start, counters=Counters.STORED)
+            trial = store.trials.begin(session, run.id, spec)
+            for number in (1, 2, 3):
+                step = trial_step(row, number, seen=(0.0, 4.0 * (number % 2)))
+                store.trials.save_step(trial, spec, step.record, step.truth, ids[row.step])
+                row = counted(row, step.record)
+            store.trials.end(trial, TrialEnd(Outcome.SOLVED, 3, 19.5))
+        verification = store.verifications.begin(run.id, verification_spec(), VERSIONS, NOW)
+        for number in range(1, 5):
+            record, truth = replication(row, number)
+            store.verifications.save(verification, record, truth, ids[row.step])
+            row = counted(row, record)
+        store.verifications.end(verification, Verdict.UNDECIDED, None, NOW)
     return path
 
 

@@ -9,12 +9,21 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from affcli.core.affordance import Affordance
-from affcli.core.behavior import GRASP, BehaviorCall, BehaviorName, ExecutionStatus
+from affcli.core.behavior import (
+    GRASP,
+    BehaviorCall,
+    BehaviorName,
+    ExecutionStatus,
+    ExploratoryBehavior,
+)
 from affcli.core.geometry import Point, Pose, direction_degrees
 from affcli.core.identity import Component
+from affcli.core.motion import Carry, Slide, Wait
 from affcli.core.observation import Observation
+from affcli.core.replay import Difference
 from affcli.core.specs import LearningStep
-from affcli.errors import DatabaseError
+from affcli.core.tool import Color, ToolName, unknown_tool
+from affcli.errors import DatabaseError, UsageError
 from affcli.lab.learning_run import LearningRun
 from affcli.store import Store, run_sql
 from affcli.store.learning import insert_steps
@@ -284,3 +293,90 @@ def test_a_value_that_affcli_did_not_write_is_named(params: str, store: Store) -
         connection.exec_driver_sql("UPDATE affordance SET binding_params = ?", (params,))
     with pytest.raises(DatabaseError, match=f"the affordance table of run {run.id} holds a value"):
         store.learning.table(run.id)
+
+
+def test_the_latest_run_is_the_one_begun_last_whatever_the_clock_says(store: Store) -> None:
+    earlier = store.learning.begin(learning_spec(seed=1, behaviors=3), VERSIONS, LATER)
+    later = learned(store, 3)
+    steps = learning_steps(3)
+    assert store.learning.append(earlier.id, 0, steps, None, 1.0, done=True, now=LATER)
+    assert store.learning.latest("t-hook") == later
+
+
+def test_parts_that_nobody_here_knows_are_read_as_they_were_written(store: Store) -> None:
+    """A colleague's run can be listed, and found again."""
+    rake = replace(learning_spec().held, name=ToolName("rake"))
+    push = ExploratoryBehavior(
+        BehaviorCall.of(BehaviorName("push around"), {"radius": 2.5, "angle": 30.0}),
+        (Slide(1.0, 0.1), Wait(0.5), Carry(Pose(1.0, 2.0, 0.3))),
+    )
+    spec = replace(
+        learning_spec(),
+        held=rake,
+        repertoire=(push,),
+        binding=BehaviorCall.of(BehaviorName("pinch"), {"grasp_point": 0.1 + 0.2, "angle": 5.0}),
+        explorer=Component.parse("curious:rate=0.1,width=3"),
+        world=Component.parse("moon@3:gravity=1.62"),
+        settings='{"moon.dust":0.5}',
+    )
+    run = store.learning.begin(spec, VERSIONS, NOW)
+    assert run.spec == spec
+    assert run.spec.key == spec.key
+    assert store.learning.find(run.spec) == run
+
+
+def test_a_tool_of_unknown_shape_has_no_value(store: Store) -> None:
+    spec = replace(learning_spec(), held=unknown_tool("rake"))
+    assert store.learning.begin(spec, VERSIONS, NOW).spec == spec
+    assert run_sql(store.path, "select count(*) from tool").rows == ((0,),)
+
+
+def test_tools_are_stored_once_by_value(store: Store) -> None:
+    held = learning_spec().held
+    for tool in (held, held, held.painted(Color((1.0, 2.0, 3.0)))):
+        spec = replace(learning_spec(), held=tool)
+        assert store.learning.begin(spec, VERSIONS, NOW).spec.held == tool
+    assert run_sql(store.path, "select name from tool").rows == (("t-hook",), ("t-hook",))
+
+
+def test_a_world_that_does_not_tell_leaves_the_truth_open(store: Store) -> None:
+    run = store.learning.begin(learning_spec(), VERSIONS, NOW)
+    steps = [(record, None) for record, _ in learning_steps(3)]
+    store.learning.append(run.id, 0, steps, None, 1.0, done=True, now=NOW)
+    assert store.learning.row_starts(run.id) == {}
+    assert store.learning.differences(run.id, "t-hook", steps) == ()
+    with pytest.raises(UsageError, match="its world does not tell where the attractor was"):
+        store.learning.scene(run.id, 3)
+
+
+def test_a_behavior_s_scene_is_as_it_truly_was(store: Store) -> None:
+    run = learned(store, 3)
+    (before, _), (record, truth) = learning_steps(3)[1:]
+    scene = store.learning.scene(run.id, 3)
+    assert truth is not None
+    assert (scene.title, scene.key) == (f"Run {run.id}, behavior 3 of 3", (run.id, 3))
+    assert (scene.learned, scene.held, scene.goal) == (run.spec, run.spec.held, None)
+    assert scene.wrist_before == before.execution.wrist_end
+    assert (scene.wrist_start, scene.attractor_end) == (
+        *(record.execution.wrist_start, truth.end.point),
+    )
+    assert store.learning.scene(run.id, 1).wrist_before is None
+    with pytest.raises(UsageError, match=f"no behavior 4 in run {run.id}; it has 1 to 3"):
+        store.learning.scene(run.id, 4)
+    with pytest.raises(UsageError, match="no learning run 9; they are numbered 1 to 1"):
+        store.learning.scene(9, 1)
+
+
+def test_what_came_out_otherwise_is_named(store: Store) -> None:
+    run = learned(store, 3)
+    steps = learning_steps(3)
+    assert store.learning.differences(run.id, "t-hook", steps) == ()
+    record, truth = steps[2]
+    assert record.affordance is not None
+    other = replace(record, clock=9.0, affordance=replace(record.affordance, truncated=True))
+    assert store.learning.differences(run.id, "t-hook", [(other, truth)]) == (
+        Difference(3, "clock", record.clock, 9.0),
+        Difference(3, "truncated", 0, True),
+    )
+    (missing, *_) = store.learning.differences(run.id, "t-hook", learning_steps(1, first=4))
+    assert missing == Difference(4, "number", None, 4)

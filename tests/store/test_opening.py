@@ -2,14 +2,16 @@
 
 import os
 import sqlite3
+import threading
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from affcli.errors import DatabaseError
-from affcli.store import database_info, open_store, run_sql, upgrade
+from affcli.store import check, database_info, open_store, run_sql, upgrade
 from affcli.store.journal import journal_mode_for
+from affcli.store.lock_retry import ATTEMPT
 from affcli.store.revision import REVISION
 from tests.store.records import learned
 
@@ -261,3 +263,16 @@ def test_wal_is_used_and_left_again(database: Path, monkeypatch: pytest.MonkeyPa
     with open_store(database, create=False, write=True):
         pass
     assert database_info(database).journal_mode == "delete"
+
+
+@pytest.mark.fault(5)
+@pytest.mark.parametrize("way", [read, write, query, database_info, check, upgrade])
+def test_every_way_in_waits_for_a_lock(way: Way, database: Path) -> None:
+    """Another process commits meanwhile, and lets nobody read for longer than SQLite waits."""
+    other = sqlite3.connect(database, isolation_level=None, check_same_thread=False)
+    other.execute("BEGIN EXCLUSIVE")
+    giving_back = threading.Timer(2 * ATTEMPT, other.execute, ["COMMIT"])
+    giving_back.start()
+    way(database)
+    giving_back.join()
+    other.close()

@@ -7,10 +7,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from affcli.core.choice import Reason
+from affcli.core.geometry import Point, Pose
+from affcli.core.identity import Component
 from affcli.core.row_filter import Cell
 from affcli.core.specs import Counters, Protocol, TrialRecord
+from affcli.core.task import GoalRegion, Task
 from affcli.core.trial import Outcome, TrialEnd
-from affcli.errors import DatabaseError
+from affcli.errors import DatabaseError, UsageError
 from affcli.store import Store, open_store, pack_robot, run_sql
 from tests.factories import learning_spec
 from tests.store.records import (
@@ -19,11 +22,13 @@ from tests.store.records import (
     begun,
     counted,
     learned,
+    replication,
     robot_record,
     session_spec,
     trial_record,
     trial_spec,
     trial_step,
+    verification_spec,
 )
 
 LATER = "2026-01-02T04:04:05+00:00"
@@ -90,6 +95,77 @@ def test_a_step_and_the_counters_it_changes_are_saved_together(store: Store) -> 
         (2, 2),
         (3, 2),
     ]
+
+
+def test_a_step_that_cannot_be_saved_leaves_the_counters(store: Store) -> None:
+    run = learned(store, 9)
+    table, ids = store.learning.table(run.id)
+    spec = trial_spec(counters=STORED)
+    trial = store.trials.begin(begun(store), run.id, spec)
+    row = table.row(0)
+    step = trial_step(row)
+    store.trials.save_step(trial, spec, step.record, step.truth, ids[row.step])
+    again = trial_step(counted(row, step.record), 1)  # of the same number
+    with pytest.raises(DatabaseError, match="UNIQUE constraint failed: step"):
+        store.trials.save_step(trial, spec, again.record, again.truth, ids[row.step])
+    assert counters_of(store) == [(2, 2), (1, 1), (1, 1)]
+    assert len(store.trials.steps(trial)) == 1
+
+
+def test_a_try_and_the_counters_it_changes_are_saved_together(store: Store) -> None:
+    run = learned(store, 9)
+    table, ids = store.learning.table(run.id)
+    row = table.row(0)
+    verification = store.verifications.begin(run.id, verification_spec(), VERSIONS, NOW)
+    record, truth = replication(row)
+    store.verifications.save(verification, record, truth, ids[row.step])
+    again, truth = replication(counted(row, record))
+    with pytest.raises(DatabaseError, match="UNIQUE constraint failed: replication"):
+        store.verifications.save(verification, again, truth, ids[row.step])
+    assert counters_of(store) == [(2, 2), (1, 1), (1, 1)]
+    (tried,) = store.verifications.of_row(ids[row.step])
+    assert (tried.shape, tried.before, tried.after) == ("l-hook", (1, 1), (2, 2))
+    assert value(store, "select world from verification") == "table"
+
+
+def test_two_planners_and_any_goal_fit_into_a_session(store: Store) -> None:
+    """A trial comes back as it was given, whatever its parts are called."""
+    run = learned(store)
+    session = begun(store)
+    shelf = Task("kitchen", GoalRegion("shelf", Point(1.5, 20.1), 3.0), "sink", Point(0.1, 0.2))
+    specs = (
+        trial_spec(),
+        trial_spec(planner="nested-query:share=0.05"),
+        replace(trial_spec(planner="oracle@2:depth=3"), task=shelf, world=Component("moon")),
+    )
+    for spec in specs:
+        store.trials.begin(session, run.id, spec)
+    trials = store.trials.trials(session_id=session)
+    assert tuple(trial.spec for trial in trials) == specs
+    assert {trial.learned for trial in trials} == {run.spec}
+
+
+def test_a_step_s_scene_is_as_it_truly_was(store: Store) -> None:
+    run = learned(store)
+    table, ids = store.learning.table(run.id)
+    spec = trial_spec(shape="l-hook", protocol=Protocol.TOOL_ADAPTATION)
+    steps = (trial_step(table.row(0), 1), trial_step(table.row(1), 2, blocked=True))
+    blind = trial_step(table.row(1), 3)._replace(truth=None)
+    record = TrialRecord(spec, (*steps, blind), TrialEnd(Outcome.NO_ROW, 3, 1.0))
+    (trial,) = store.trials.save_all(begun(store), run.id, [record], ids)
+    scene = store.trials.scene(trial, 2)
+    assert (scene.title, scene.key) == (f"Trial {trial}, step 2 of 3", (trial, 2))
+    assert (scene.tool, scene.held, scene.goal) == ("t-hook", spec.held, spec.task.goal)
+    assert (scene.blocked, scene.wrist_before) == (True, Pose(2.5, 16.0, 0.25))
+    assert scene.wrist_start == steps[1].record.placing.wrist_start
+    assert (scene.attractor_start, scene.learned) == (Point(3.0, 25.1), run.spec)
+    assert store.trials.scene(trial, 1).wrist_before is None
+    with pytest.raises(UsageError, match="its world does not tell where the attractor was"):
+        store.trials.scene(trial, 3)
+    with pytest.raises(UsageError, match=f"no step 4 in trial {trial}; it has steps 1 to 3"):
+        store.trials.scene(trial, 4)
+    with pytest.raises(UsageError, match="no trial 9; they are numbered 1 to 1"):
+        store.trials.scene(9, 1)
 
 
 def test_a_trial_from_the_table_as_learned_leaves_the_stored_counters(store: Store) -> None:
