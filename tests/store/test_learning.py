@@ -199,6 +199,7 @@ def test_every_behavior_is_kept_with_what_was_commanded_seen_and_true(store: Sto
     kept = [dict(zip(result.columns, row, strict=True)) for row in result.rows]
     for stored, (record, truth) in zip(kept, learning_steps(3), strict=True):
         execution, start, end = record.execution, record.start, record.end
+        assert truth is not None
         assert stored == {
             "learning_run_id": run.id,
             "step": record.step,
@@ -269,7 +270,7 @@ def test_row_starts_tell_where_wrist_and_attractor_were(store: Store) -> None:
     assert starts == {
         record.step: (record.execution.wrist_start, truth.start)
         for record, truth in learning_steps(6)
-        if record.affordance is not None
+        if record.affordance is not None and truth is not None
     }
     wrist, attractor = starts[3]
     assert type(wrist) is type(attractor) is Pose
@@ -279,7 +280,9 @@ def test_row_starts_tell_where_wrist_and_attractor_were(store: Store) -> None:
     "tool", ["x'); DROP TABLE affordance; --", "[/]", '"; PRAGMA x', "\x1b[0m"]
 )
 def test_text_from_outside_is_inert(tool: str, store: Store) -> None:
-    named = replace(learning_spec(behaviors=9), held=replace(learning_spec().held, name=tool))
+    named = replace(
+        learning_spec(behaviors=9), held=replace(learning_spec().held, name=ToolName(tool))
+    )
     run = learned(store, spec=named)
     assert store.learning.latest(tool) == run
     assert len(store.learning.table(run.id)[0]) == 3

@@ -67,8 +67,8 @@ def test_sessions_are_begun_found_and_finished(store: Store) -> None:
     found = store.sessions.find(session_spec())
     assert found is not None
     assert (found.status, found.finished_at) == ("done", LATER)
-    for other in (session_spec(seed=1), replace(session_spec(), task_set="mine")):
-        assert store.sessions.find(other) is None
+    for wanted in (session_spec(seed=1), replace(session_spec(), task_set="mine")):
+        assert store.sessions.find(wanted) is None
 
 
 def test_a_reproduction_begun_again_is_the_same_session(store: Store) -> None:

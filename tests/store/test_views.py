@@ -9,7 +9,6 @@ import pytest
 from affcli.behaviors.moving import SLIDE_ARM_LEFT
 from affcli.core.behavior import BehaviorCall, ExecutionStatus
 from affcli.core.observation import Observation
-from affcli.core.trial import Truth
 from affcli.store import Store, run_sql
 from affcli.store.migrate import migrations_folder
 from affcli.store.revision import APPLICATION_ID, RELATIONS
@@ -41,7 +40,7 @@ def row(store: Store) -> Store:
     )
     step = replace(record, execution=execution, start=START, end=END, affordance=affordance)
     run = store.learning.begin(learning_spec(), VERSIONS, NOW)
-    store.learning.append(run.id, 0, [(step, Truth(*truth))], {}, 1.0, done=True, now=NOW)
+    store.learning.append(run.id, 0, [(step, truth)], {}, 1.0, done=True, now=NOW)
     return store
 
 
