@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from affcli.store.copying import backup
     from affcli.store.environment import Fact, State, environment_facts
-    from affcli.store.health import Finding, check
-    from affcli.store.info import DatabaseInfo, database_info
+    from affcli.store.health import DatabaseInfo, Finding, check, database_info
     from affcli.store.opening import Store, open_store, upgrade
     from affcli.store.packing import PackedRobot, pack_robot
     from affcli.store.query import QueryResult, run_sql
@@ -37,8 +36,7 @@ __all__ = [
 _HOMES = {
     "copying": ("backup",),
     "environment": ("Fact", "State", "environment_facts"),
-    "health": ("Finding", "check"),
-    "info": ("DatabaseInfo", "database_info"),
+    "health": ("DatabaseInfo", "Finding", "check", "database_info"),
     "opening": ("Store", "open_store", "upgrade"),
     "packing": ("PackedRobot", "pack_robot"),
     "query": ("QueryResult", "run_sql"),

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from affcli.errors import DatabaseError, one_line
-from affcli.store.info import database_info
+from affcli.store.health import database_info
 from affcli.store.journal import journal_mode_for
 
 State = Literal["ok", "look", "bad"]

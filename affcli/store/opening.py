@@ -11,14 +11,22 @@ import sqlalchemy as sa
 from affcli.errors import DatabaseError, one_line
 from affcli.store.connection import Database
 from affcli.store.copying import backup_name, copy_of
-from affcli.store.database_file import look, opened, require_place, require_something
+from affcli.store.database_file import (
+    REVISION,
+    is_older,
+    look,
+    opened,
+    require_current,
+    require_place,
+    require_something,
+    stored_revision,
+)
 from affcli.store.faults import PRIMARY, faults_named, result_code
 from affcli.store.journal import set_journal_mode
 from affcli.store.learning import Learning
 from affcli.store.lock_retry import LONGEST_WAIT, retried
 from affcli.store.migrate import run_migrations
 from affcli.store.results import Results
-from affcli.store.revision import REVISION, is_older, require_current, stored_revision
 from affcli.store.selections import Selections
 from affcli.store.sessions import Sessions
 from affcli.store.trials import Trials

@@ -8,10 +8,15 @@ from typing import NoReturn
 
 from affcli.core.row_filter import Cell
 from affcli.errors import BadInputError, one_line
-from affcli.store.database_file import look, opened, require_place, require_something
+from affcli.store.database_file import (
+    look,
+    opened,
+    require_current,
+    require_place,
+    require_something,
+)
 from affcli.store.faults import PRIMARY, faults_named, result_code
 from affcli.store.lock_retry import LONGEST_WAIT, retried
-from affcli.store.revision import require_current
 
 MAX_ROWS = 10_000
 MAX_SECONDS = 2.0

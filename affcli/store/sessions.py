@@ -119,7 +119,7 @@ def _affordance_ids(connection: sa.Connection, run_id: int) -> dict[int, int]:
 
 
 def _part_of(session_id: int) -> sa.ColumnElement[bool]:
-    """Be a learning run of a reproduction, as the unique index spells it."""
+    """Tell whether a learning run is part of a reproduction, as the unique index spells it."""
     return sa.func.coalesce(learning_run.c.session_id, 0) == session_id
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from affcli.store.identity import REVISION
+from affcli.store.database_file import REVISION
 from tests.cli.program import done, names_in, refused, rows
 
 READING = {

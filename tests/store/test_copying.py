@@ -9,7 +9,7 @@ import pytest
 
 from affcli.errors import DatabaseError
 from affcli.store import Store, backup, check, open_store, run_sql, upgrade
-from affcli.store.revision import REVISION
+from affcli.store.database_file import REVISION
 from tests.store.processes import child
 from tests.store.records import LONG_RUN, NOW, VERSIONS, learned
 

@@ -12,8 +12,8 @@ import pytest
 import affcli
 from affcli.errors import DatabaseError
 from affcli.store import database_info, open_store, run_sql, upgrade
+from affcli.store.database_file import REVISION
 from affcli.store.migrate import migrations_folder
-from affcli.store.revision import REVISION
 from tests.store.records import learned
 
 LATER = f"{int(REVISION) + 1:04}"
@@ -40,7 +40,7 @@ def later_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     shutil.copytree(migrations_folder(), folder, ignore=shutil.ignore_patterns("__pycache__"))
     (folder / "versions" / f"{LATER}_next.py").write_text(NEXT.format(more=""))
     monkeypatch.setattr("affcli.store.migrate.migrations_folder", lambda: folder)
-    for module in ("revision", "opening", "info"):
+    for module in ("database_file", "opening", "health"):
         monkeypatch.setattr(f"affcli.store.{module}.REVISION", LATER)
     return folder
 

@@ -23,7 +23,7 @@ from affcli.lab.replaying import replay_run, replay_trial
 from affcli.lab.run_parts import RunParts
 from affcli.simulation.tasks.extension_of_reach import extension_of_reach
 from affcli.store import Store, check, open_store, run_sql, upgrade
-from affcli.store.revision import REVISION
+from affcli.store.database_file import REVISION
 
 DATABASES = Path(__file__).parent / "databases"
 PAST = [f"{k:04}" for k in range(1, int(REVISION))]

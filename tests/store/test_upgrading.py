@@ -11,7 +11,7 @@ import pytest
 
 from affcli.errors import DatabaseError
 from affcli.store import check, database_info, upgrade
-from affcli.store.revision import REVISION
+from affcli.store.database_file import REVISION
 from tests.store.processes import child, finished
 
 DATABASES = Path(__file__).parent / "databases"

@@ -10,8 +10,8 @@ from affcli.behaviors.moving import SLIDE_ARM_LEFT
 from affcli.core.behavior import BehaviorCall, ExecutionStatus
 from affcli.core.observation import Observation
 from affcli.store import Store, run_sql
+from affcli.store.database_file import APPLICATION_ID, RELATIONS
 from affcli.store.migrate import migrations_folder
-from affcli.store.revision import APPLICATION_ID, RELATIONS
 from affcli.store.tables import TABLES as BY_NAME
 from tests.factories import BINDING, learning_spec
 from tests.store.records import NOW, VERSIONS, learning_step
