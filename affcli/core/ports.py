@@ -232,7 +232,11 @@ class Setting(Protocol):
         """
 
     def restore(self, snapshot: Mapping[str, Any]) -> None:
-        """Go on from a snapshot. ValueError, KeyError or TypeError when it is none of this world's."""
+        """Go on from a snapshot.
+
+        Raises:
+            ValueError, KeyError, TypeError: it is none of this world's.
+        """
 
 
 class LostRows(Protocol):

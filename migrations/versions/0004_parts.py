@@ -20,7 +20,6 @@ branch_labels = None
 depends_on = None
 
 STRICT = sqlite3.sqlite_version_info >= (3, 37)
-"""Strict tables refuse text in a column of numbers; an older SQLite does not know them."""
 
 DEFAULTS: dict[str, dict[str, Any]] = json.loads("""{
 "arm": {"shoulder_height": 10.0, "upper_arm": 10.0, "forearm": 10.0, "wrist_to_flange": 2.0,
@@ -43,7 +42,7 @@ DEFAULTS: dict[str, dict[str, Any]] = json.loads("""{
     "bar_reach": 5.6, "hook_length": 5.3, "thickness": 0.75},
 "trial": {"max_steps": 60}
 }""")
-"""The defaults number 1."""
+"""The defaults number 1; a run of an older revision has them where it did not know a setting."""
 
 TOOLS: dict[str, tuple[list[float], str]] = {
     "stick": ([200.0, 40.0, 40.0], "handle"),
