@@ -5,9 +5,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 from statistics import fmean
-from typing import Protocol
 
-from affcli.report.statistics import HIGH, LOW, quantile
+from affcli.analysis.statistics import HIGH, LOW, quantile
+from affcli.core.records import LearningRunInfo
+from affcli.core.results import LearningInterval
 
 INTERVALS = 60
 """Points of a curve."""
@@ -15,50 +16,34 @@ ENOUGH_BEHAVIORS = 20
 """Of fewer, a share says hardly anything: the curve of the share begins there."""
 
 
-class Interval(Protocol):
-    """What one learning run did in one interval of robot time."""
-
-    @property
-    def number(self) -> int:
-        """Of the interval: 0 is the first."""
-
-    @property
-    def behaviors(self) -> int:
-        """Exploratory behaviors that ended in it."""
-
-    @property
-    def effects(self) -> int:
-        """How many of these moved the attractor, which made as many rows."""
-
-
 @dataclass(frozen=True, slots=True)
 class Curve:
     """One learning run.
 
     Args:
-        name: what it is called.
+        run: which.
         minutes: of robot time, from 0 to the end of the run.
         rows: made by then.
         share: of the behaviors by then that had an effect; NaN while they are few.
     """
 
-    name: str
+    run: LearningRunInfo
     minutes: Sequence[float]
     rows: Sequence[float]
     share: Sequence[float]
 
     @classmethod
     def of(
-        cls, name: str, intervals: Iterable[Interval], seconds: float, robot_seconds: float
+        cls, run: LearningRunInfo, intervals: Iterable[LearningInterval], seconds: float
     ) -> "Curve":
         """Sum up what a run did.
 
         Args:
-            name: what it is called.
+            run: which; it has begun.
             intervals: what it did in each; those in which nothing ended may be left out.
             seconds: length of an interval.
-            robot_seconds: the robot clock at its end.
         """
+        robot_seconds = run.robot_seconds
         count = max(1, math.ceil(round(robot_seconds / seconds, 9)))
         behaviors, effects = [0] * (count + 1), [0] * (count + 1)
         for interval in intervals:
@@ -72,7 +57,7 @@ class Curve:
             for made, done in zip(rows, accumulate(behaviors), strict=True)
         ]
         ends = [min(number * seconds, robot_seconds) / 60.0 for number in range(count + 1)]
-        return cls(name, ends, [float(made) for made in rows], share)
+        return cls(run, ends, [float(made) for made in rows], share)
 
 
 @dataclass(frozen=True, slots=True)

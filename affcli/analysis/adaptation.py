@@ -1,49 +1,13 @@
-"""How robots adapt to a broken tool, step by step: shares of vain tries, probabilities (§7.2)."""
+"""How robots adapt to a broken tool step by step: tries on lost rows, probabilities (§7.2)."""
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from statistics import fmean, stdev
-from typing import Protocol
+from itertools import accumulate
+from statistics import fmean
 
-from affcli.report.reproduction import ENOUGH_ROBOTS
-from affcli.report.statistics import Z95, wilson
-
-
-class Sums(Protocol):
-    """What the trials of one group made of a step number."""
-
-    @property
-    def number(self) -> int:
-        """Which step: 1, 2, 3, ..."""
-
-    @property
-    def trials(self) -> int:
-        """How many trials took it."""
-
-    @property
-    def lost(self) -> int:
-        """How many of them tried a row that was truly lost."""
-
-    @property
-    def change(self) -> float:
-        """Change of the mean replication probability on the missing side, summed over them."""
-
-
-class Group(Protocol):
-    """Trials that are summed: all of one robot, or a single one."""
-
-    @property
-    def trials(self) -> int:
-        """How many there are."""
-
-    @property
-    def with_rows(self) -> int:
-        """How many started from a table that has rows on the missing side."""
-
-    @property
-    def steps(self) -> Sequence[Sums]:
-        """Sums of each step number that some of them took, in order."""
+from affcli.analysis.statistics import ENOUGH_ROBOTS, mean_interval, wilson
+from affcli.core.records import SessionInfo
+from affcli.core.results import StepSums, TrialGroup
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,11 +44,9 @@ class MeanProbability:
 
 @dataclass(frozen=True, slots=True)
 class AdaptationCourse:
-    """All that the figure of the adaptation shows.
+    """How the robots of a session adapted to a broken tool.
 
     Args:
-        title: whose trials they are, in words.
-        note: why there are no intervals; empty when there are.
         session: whose trials they are.
         tool, shape: what the robots believed to hold, and what it was.
         trials: with the broken tool.
@@ -93,9 +55,7 @@ class AdaptationCourse:
             is no missing side, no row lies on it, or there are no such trials.
     """
 
-    title: str
-    note: str
-    session: int
+    session: SessionInfo
     tool: str
     shape: str
     trials: int
@@ -103,8 +63,24 @@ class AdaptationCourse:
     broken: tuple[MeanProbability, ...]
     whole: tuple[MeanProbability, ...]
 
+    @classmethod
+    def of(
+        cls,
+        session: SessionInfo,
+        tool: str,
+        shape: str,
+        broken: Sequence[TrialGroup],
+        whole: Sequence[TrialGroup],
+    ) -> "AdaptationCourse":
+        """Sum up trials with the broken tool and with the whole one."""
+        shares = shares_of(broken)
+        last = shares[-1].number if shares else 0
+        trials = sum(group.trials for group in broken)
+        courses = (probabilities_of(groups, last) for groups in (broken, whole))
+        return cls(session, tool, shape, trials, shares, *courses)
 
-def has_intervals(groups: Sequence[Group]) -> bool:
+
+def has_intervals(groups: Sequence[TrialGroup]) -> bool:
     """Tell whether there are intervals over these groups.
 
     Those of one robot are its trials, and say what further trials of this robot would give. Of
@@ -113,9 +89,9 @@ def has_intervals(groups: Sequence[Group]) -> bool:
     return len(groups) >= ENOUGH_ROBOTS or all(group.trials == 1 for group in groups)
 
 
-def shares_of(groups: Sequence[Group]) -> tuple[Share, ...]:
+def shares_of(groups: Sequence[TrialGroup]) -> tuple[Share, ...]:
     """Return the share of tries on lost affordances at each step number, among trials that run."""
-    steps: dict[int, list[Sums]] = {}
+    steps: dict[int, list[StepSums]] = {}
     for sums in (sums for group in groups for sums in group.steps):
         steps.setdefault(sums.number, []).append(sums)
     certain = has_intervals(groups)
@@ -131,7 +107,7 @@ def shares_of(groups: Sequence[Group]) -> tuple[Share, ...]:
 
 
 def share_interval(groups: Sequence[tuple[int, int]]) -> tuple[float, float]:
-    """Return a 95 % interval of a share from groups that may each be of one mind.
+    """Return a 95 % interval of a share from groups whose trials may be alike.
 
     Wilson's interval for as many independent trials as these tell as much as: trials of one robot
     share what it learned. Their number is divided by the design effect, how many times larger the
@@ -152,7 +128,7 @@ def share_interval(groups: Sequence[tuple[int, int]]) -> tuple[float, float]:
     return wilson(kind / effect, n / effect)
 
 
-def probabilities_of(groups: Sequence[Group], last: int) -> tuple[MeanProbability, ...]:
+def probabilities_of(groups: Sequence[TrialGroup], last: int) -> tuple[MeanProbability, ...]:
     """Return the mean probability on the missing side at the beginning and after each step.
 
     It begins at 1, for every trial starts from the table as learned. Choice: a trial that ended
@@ -173,21 +149,14 @@ def probabilities_of(groups: Sequence[Group], last: int) -> tuple[MeanProbabilit
     means = []
     for number, values in enumerate(zip(*courses, strict=True)):
         mean = fmean(values)
-        half = Z95 * stdev(values) / math.sqrt(len(values)) if certain else 0.0
-        interval = (max(0.0, mean - half), min(1.0, mean + half)) if certain else None
+        interval = mean_interval(values) if certain else None
+        if interval is not None:
+            interval = max(0.0, interval[0]), min(1.0, interval[1])
         means.append(MeanProbability(number, mean, interval))
     return tuple(means)
 
 
-def _course(group: Group, last: int) -> list[float]:
+def _course(group: TrialGroup, last: int) -> list[float]:
     """Return the mean probability of a group's trials at the beginning and after each step."""
     changes = {sums.number: sums.change / group.with_rows for sums in group.steps}
-    return list(_summed(1.0, [changes.get(number, 0.0) for number in range(1, last + 1)]))
-
-
-def _summed(start: float, changes: Sequence[float]) -> Iterator[float]:
-    """Yield a value at the beginning and after each change."""
-    yield start
-    for change in changes:
-        start += change
-        yield start
+    return list(accumulate((changes.get(n, 0.0) for n in range(1, last + 1)), initial=1.0))
