@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from affcli.analysis.paper import EXTENSION_OF_REACH, other_parts, papers_cell
+from affcli.analysis.paper import EXTENSION_OF_REACH, other_parts, papers_break, papers_cell
 from affcli.analysis.reproduction import Reproduction
 from affcli.core.records import LearningRunInfo, SessionInfo
 from affcli.core.results import BehaviorGroup, RowUse, TrialResult
@@ -28,7 +28,7 @@ class GoalCounts:
 
     Args:
         by: whose trials.
-        papers: the paper's tool, tasks, planner and ways of learning.
+        papers: tool, goals, planner and the parts of learning are the paper's.
         goals: (solved, tried) by goal, in the order in which they were tried first.
     """
 
@@ -74,7 +74,13 @@ class ProtocolCounts:
 
 @dataclass(frozen=True, slots=True)
 class Breaking:
-    """One session in which a tool broke: the broken tool's trials and the whole one's."""
+    """One session in which a tool broke: the broken tool's trials and the whole one's.
+
+    Args:
+        session, run, seed, tool, shape, sensor, planner: which.
+        papers: tool, shape, tasks, planner and the parts of learning are the paper's.
+        broken, whole: counts of its trials.
+    """
 
     session: int
     run: int
@@ -83,6 +89,7 @@ class Breaking:
     shape: str
     sensor: str
     planner: str
+    papers: bool
     broken: ProtocolCounts
     whole: ProtocolCounts
 
@@ -118,17 +125,16 @@ def goal_counts(
         runs: the learning runs whose tables were used.
     """
     as_the_paper = {run.id for run in runs if not other_parts(run.spec)}
-    papers: dict[SolvedBy, bool] = {}
-    counts: dict[SolvedBy, dict[str, tuple[int, int]]] = {}
+    counts: dict[tuple[SolvedBy, bool], dict[str, tuple[int, int]]] = {}
     for trial in results:
         if trial.outcome is Outcome.INVALID:
             continue
         by = SolvedBy(trial.run_id, trial.tool, trial.sensor, trial.planner, trial.task_set)
-        papers[by] = papers.get(by, True) and trial.run_id in as_the_paper and papers_cell(trial)
-        goals = counts.setdefault(by, {})
+        papers = trial.run_id in as_the_paper and papers_cell(trial)
+        goals = counts.setdefault((by, papers), {})
         solved, tried = goals.get(trial.goal, (0, 0))
         goals[trial.goal] = solved + (trial.outcome is Outcome.SOLVED), tried + 1
-    return [GoalCounts(by, papers[by], goals) for by, goals in counts.items()]
+    return [GoalCounts(by, papers, goals) for (by, papers), goals in counts.items()]
 
 
 def breaking_of(
@@ -137,16 +143,18 @@ def breaking_of(
     uses: Mapping[Protocol, Iterable[RowUse]],
 ) -> Breaking | None:
     """Return the counts of one ``break-tool`` session; None when no broken tool was tried in it."""
-    broken = next((r for r in results if r.protocol is Protocol.TOOL_ADAPTATION), None)
-    if broken is None:
+    adapting = [r for r in results if r.protocol is Protocol.TOOL_ADAPTATION]
+    if not adapting:
         return None
     counts = {
         protocol: ProtocolCounts.of([r for r in results if r.protocol is protocol], of_protocol)
         for protocol, of_protocol in uses.items()
     }
+    first = adapting[0]
     return Breaking(
-        *(session.id, broken.run_id, session.spec.seed, broken.tool, broken.shape),
-        *(broken.sensor, broken.planner),
-        counts[Protocol.TOOL_ADAPTATION],
-        counts[Protocol.EXTENSION_OF_REACH],
+        *(session.id, first.run_id, session.spec.seed, first.tool, first.shape),
+        *(first.sensor, first.planner),
+        papers=not other_parts(session.spec) and all(map(papers_break, adapting)),
+        broken=counts[Protocol.TOOL_ADAPTATION],
+        whole=counts[Protocol.EXTENSION_OF_REACH],
     )

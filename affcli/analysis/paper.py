@@ -6,7 +6,14 @@ from types import MappingProxyType
 from affcli.core.behavior import GRASP
 from affcli.core.identity import Component
 from affcli.core.results import SuccessCount, TrialResult
-from affcli.core.specs import BROKEN_SHAPE, BROKEN_TOOL, LearningSpec, Protocol, SessionSpec
+from affcli.core.specs import (
+    BROKEN_SHAPE,
+    BROKEN_TOOL,
+    LearningSpec,
+    Protocol,
+    SessionSpec,
+    TrialSpec,
+)
 
 GOALS = ("1", "2", "3", "4")
 STARTS = 4
@@ -63,6 +70,23 @@ def papers_break(of: SuccessCount | TrialResult) -> bool:
         and of.goal in GOALS
         and _papers_trials(of)
     )
+
+
+def papers_successes(spec: TrialSpec) -> int | None:
+    """Return the paper's successes of 4 with the tool and at the goal of a trial.
+
+    None when it has none, or when the trial has another protocol, task set or planner.
+    """
+    which = (spec.protocol, spec.task.task_set, str(spec.planner))
+    if which != (Protocol.EXTENSION_OF_REACH, TASK_SET, PLANNER):
+        return None
+    return EXTENSION_OF_REACH.get((spec.tool, spec.goal))
+
+
+def papers_breaking(spec: TrialSpec, learned: LearningSpec) -> bool:
+    """Tell whether a trial with a broken tool, and the learning before, are the paper's (§7.2)."""
+    which = (spec.tool, spec.shape, spec.task.task_set, str(spec.planner))
+    return which == (BROKEN_TOOL, BROKEN_SHAPE, TASK_SET, PLANNER) and not other_parts(learned)
 
 
 def _papers_trials(of: SuccessCount | TrialResult) -> bool:

@@ -48,9 +48,7 @@ def same_effect(one: Affordance, other: Affordance) -> bool:
 def current(rows: Sequence[Affordance]) -> list[RowStatus]:
     """Return for each row whether it still counts, by its counters."""
     return [
-        RowStatus.LIVE
-        if is_probable(row.times_successful, row.times_used)
-        else RowStatus.EXCLUDED
+        RowStatus.LIVE if is_probable(row.times_successful, row.times_used) else RowStatus.EXCLUDED
         for row in rows
     ]
 
@@ -86,13 +84,19 @@ def around_trial(
     """
     before = [RowStatus.EXCLUDED if one in excluded_before else RowStatus.LIVE for one in ids]
     after = [
-        RowStatus.LOST if one in died else RowStatus.EXCLUDED if status is RowStatus.EXCLUDED else RowStatus.KEPT
+        RowStatus.LOST
+        if one in died
+        else RowStatus.EXCLUDED
+        if status is RowStatus.EXCLUDED
+        else RowStatus.KEPT
         for one, status in zip(ids, before, strict=True)
     ]
     return before, after
 
 
-def _against(rows: Sequence[Affordance], others: Sequence[Affordance], alone: RowStatus) -> list[RowStatus]:
+def _against(
+    rows: Sequence[Affordance], others: Sequence[Affordance], alone: RowStatus
+) -> list[RowStatus]:
     """Return `alone` for each row without a partner among the others."""
     return [
         status

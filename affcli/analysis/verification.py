@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from affcli.analysis.statistics import wilson
+from affcli.core.behavior import BehaviorCall
 from affcli.core.specs import VerificationSpec
 from affcli.core.verification import ReplicationRecord
 
@@ -23,9 +24,9 @@ class JudgedTry(NamedTuple):
     region: str
 
     @property
-    def behavior(self) -> str:
+    def call(self) -> BehaviorCall:
         """The behavior of the row with its parameters."""
-        return str(self.record.row.exploratory)
+        return self.record.row.exploratory
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +67,7 @@ class Verification:
         """The last failure of each live row that failed, by region and behavior."""
         failed = {one.affordance_id: one for one in self.of_live_rows if not one.record.replicated}
         return sorted(
-            failed.values(), key=lambda one: (one.region, one.behavior, one.record.number)
+            failed.values(), key=lambda one: (one.region, str(one.call), one.record.number)
         )
 
     @property

@@ -1,0 +1,10 @@
+"""Words for the course of an adaptation to a broken tool (§7.2)."""
+
+from affcli.analysis.adaptation import AdaptationCourse
+from affcli.report.words import many
+
+
+def course_title(course: AdaptationCourse) -> str:
+    """Return whose trials they are."""
+    robots = many(course.session.spec.robots, "robot")
+    return f"{course.tool}, broken: {course.shape}; {course.trials} trials of {robots}"
