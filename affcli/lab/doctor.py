@@ -5,7 +5,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from affcli import __version__
-from affcli.store import Fact, State, place_facts
+from affcli.store import Fact, State, environment_facts
 
 NEEDED = ("numpy", "pymunk", "SQLAlchemy", "alembic", "typer", "rich", "jinja2")
 EXTRAS = {
@@ -29,7 +29,7 @@ def facts(database: Path) -> tuple[Fact, ...]:
             _packages(what, names, f"to use it: pip install 'affcli[{extra}]'", missing="look")
             for what, (extra, names) in EXTRAS.items()
         ),
-        *place_facts(database),
+        *environment_facts(database),
     )
 
 

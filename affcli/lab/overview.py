@@ -8,14 +8,15 @@ from affcli.core.specs import Protocol
 from affcli.store import Store
 
 
-def reproduction_of(store: Store, session: SessionInfo, robots: int) -> Reproduction:
+def reproduction_of(store: Store, session_id: int, robots: int) -> Reproduction:
     """Return what the robots of a reproduction gave.
 
     Args:
         store: open.
-        session: the reproduction.
+        session_id: the reproduction.
         robots: how many of its robots are saved.
     """
+    session = next(one for one in store.sessions.all() if one.id == session_id)
     return Reproduction.of(
         session,
         robots,
@@ -43,7 +44,7 @@ def overview_of(store: Store) -> Overview:
         failures,
         trials,
         [
-            reproduction_of(store, session, session.spec.robots)
+            reproduction_of(store, session.id, session.spec.robots)
             for session in store.sessions.all("reproduce")
             if session.status == "done"
         ],

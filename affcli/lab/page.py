@@ -77,7 +77,7 @@ def _reproduction(store: Store, session: int | None) -> Reproduction | None:
     found = _session(store, session)
     if found is None:
         return None
-    return reproduction_of(store, found, len(store.sessions.saved_robots(found.id)))
+    return reproduction_of(store, found.id, len(store.sessions.saved_robots(found.id)))
 
 
 def _session(store: Store, session: int | None) -> SessionInfo | None:
@@ -119,8 +119,7 @@ def _life(
     runs = [r for r in store.learning.runs(session_id=of.id) if r.spec.robot == number]
     if not runs:
         raise UsageError(
-            f"no robot {number} in session {of.id}; they are numbered 0 to "
-            f"{result.robots - 1}"
+            f"no robot {number} in session {of.id}; they are numbered 0 to {result.robots - 1}"
         )
     name = f"robot {number} of {result.robots}, seed {of.spec.seed}"
     of_robot = [t for run in runs for t in store.trials.trials(run_id=run.id)]

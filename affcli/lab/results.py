@@ -24,7 +24,7 @@ def results_in(store: Store, session: int | None) -> Results:
     """
     found = finished_session(store, session, ["reproduce"])
     if found is not None:
-        result = reproduction_of(store, found, found.spec.robots)
+        result = reproduction_of(store, found.id, found.spec.robots)
         if not result.cells:
             raise UsageError(
                 f"session {found.id} has nothing that the paper has beside it; see affcli report, "

@@ -14,9 +14,7 @@ AGAIN = {
 """What to do about a session that was not finished, by its kind."""
 
 
-def finished_session(
-    store: Store, number: int | None, kinds: Sequence[str]
-) -> SessionInfo | None:
+def finished_session(store: Store, number: int | None, kinds: Sequence[str]) -> SessionInfo | None:
     """Return a finished session.
 
     Args:

@@ -29,7 +29,9 @@ def every_run(store: Store) -> tuple[LearningRunInfo, ...]:
 def history_of(store: Store, row_id: int) -> list[tuple[StoredStep, TrialSpec]]:
     """Return every step that tried a row, by trial and number, each with its trial."""
     steps = store.trials.steps_of_row(row_id)
-    trials = {number: store.trials.trial(number).spec for number in {step.trial_id for step in steps}}
+    trials = {
+        number: store.trials.trial(number).spec for number in {step.trial_id for step in steps}
+    }
     return [(step, trials[step.trial_id]) for step in steps]
 
 

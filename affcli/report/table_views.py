@@ -135,9 +135,7 @@ def trial_shown(
     broke = trial.spec.shape != trial.spec.tool
     shape = f": the shape of the {tool_words(left.name)}" if broke else ""
     before = _view(f"Before trial {trial.id}", run, tool, None, puck_radius, rows, statuses[0])
-    after = _view(
-        f"After trial {trial.id}{shape}", run, left, tool, puck_radius, rows, statuses[1]
-    )
+    after = _view(f"After trial {trial.id}{shape}", run, left, tool, puck_radius, rows, statuses[1])
     became = f" that became {left.name}" if broke else ""
     so_far = "" if trial.outcome else f" (unfinished, {many(len(steps), 'step')} so far)"
     title = (

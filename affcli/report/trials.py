@@ -94,20 +94,15 @@ def verdict_words(step: StepRecord) -> str:
     return f"{verdict}, row excluded from now on" if step.died else verdict
 
 
-def trial_json(
-    trial: int, run: int, spec: TrialSpec, end: TrialEnd, steps: Steps | None = None
-) -> dict[str, Any]:
+def trial_json(spec: TrialSpec, end: TrialEnd, steps: Steps | None = None) -> dict[str, Any]:
     """Return a trial as JSON types; why each row was chosen when its steps are given.
 
     Args:
-        trial, run: its number in the store, and that of the learning run whose table it used.
         spec: which trial.
         end: how it ended.
         steps: to be explained.
     """
     value: dict[str, Any] = {
-        "trial": trial,
-        "run": run,
         "sensor": spec.sensor,
         "planner": str(spec.planner),
         "tool": spec.tool,
@@ -153,14 +148,12 @@ def step_json(row: int, record: StepRecord, goal: Goal) -> dict[str, Any]:
 
 
 def solve_table(
-    goal: str,
     ends: Sequence[tuple[TrialSpec, TrialEnd]],
     runs: Mapping[str, LearningRunInfo],
 ) -> Sheet:
     """Return the trials of one goal: a row a tool, a column a start.
 
     Args:
-        goal: its name.
         ends: the trials.
         runs: the learning run whose table was used, by tool.
     """
@@ -177,7 +170,7 @@ def solve_table(
     compared = any(count is not None for count in paper.values())
     table = Sheet(
         ("tool", *columns, "solved", *(("paper",) if compared else ())),
-        title=f"Goal {goal}: outcome (steps) by start",
+        title=f"Goal {ends[0][0].goal}: outcome (steps) by start",
         caption="; ".join([*notes, "counters of the rows used were updated in the stored table"]),
         left=("tool", *columns),
     )

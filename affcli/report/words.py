@@ -65,10 +65,14 @@ def call_words(call: BehaviorCall) -> str:
 
 def call_title(call: BehaviorCall) -> str:
     """Return a behavior with its parameters and units: ``extend arm, 5 in``."""
-    units = (
+    return one_line(", ".join(filter(None, (call.name, parameter_words(call)))), 60)
+
+
+def parameter_words(call: BehaviorCall) -> str:
+    """Return a behavior's parameters with their units: ``2 in``, or ``30 deg`` for an angle."""
+    return ", ".join(
         f"{value:g} {'deg' if name.endswith('angle') else 'in'}" for name, value in call.params
     )
-    return one_line(", ".join([call.name, *units]), 60)
 
 
 def reason_words(reason: Reason) -> str:

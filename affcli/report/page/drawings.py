@@ -106,9 +106,7 @@ def _place(call: BehaviorCall, binding: BehaviorCall, turn: int) -> tuple[object
     return (call.name, [value for _, value in call.params], str(binding), turn)
 
 
-def _arrow(
-    tool: Tool, number: int, row: Affordance, excluded: Mapping[int, int] | None
-) -> Arrow:
+def _arrow(tool: Tool, number: int, row: Affordance, excluded: Mapping[int, int] | None) -> Arrow:
     """Return a row as it is drawn."""
     moved, start = row.expected_movement, row.start.wrist_to_object
     gone = not is_probable(row.times_successful, row.times_used)
