@@ -1,11 +1,8 @@
 """The binding behavior: the hand takes the tool by its handle (§5.1)."""
 
-import math
-
 from affcli.core.behavior import GRASP, BehaviorCall
 from affcli.core.part import Part
 from affcli.core.setting import Setting
-from affcli.core.tool import Hold
 from affcli.core.workspace import ToolGeometry
 
 
@@ -21,11 +18,6 @@ def grasp(
     """
     point = geometry.handle_below_grasp if grasp_point is None else grasp_point
     return BehaviorCall.of(GRASP, {"grasp_point": point, **({"angle": angle} if angle else {})})
-
-
-def hold_of(binding: BehaviorCall) -> Hold:
-    """Return how a grasp holds the tool."""
-    return Hold(binding["grasp_point"], math.radians(binding.get("angle", 0.0)))
 
 
 PARTS = (

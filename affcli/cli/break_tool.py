@@ -18,7 +18,6 @@ from affcli.cli.options import (
     TrialSensor,
 )
 from affcli.cli.terminal import now, progress, show_either
-from affcli.core.tool import middle_x
 from affcli.errors import UsageError
 from affcli.report.breaking import broken_json, broken_tables
 
@@ -53,11 +52,10 @@ def break_tool(
                 numbers.append(number)
                 trials.append(trial)
                 bar.update(share, f"{len(trials)} trials")
-    side = middle_x(used.spec.held.parts_missing_in(left))
     show_either(
         as_json=as_json,
-        value=lambda: {"run": used.id, "trials": numbers, **broken_json(becomes, side, trials)},
-        tables=lambda: broken_tables(becomes, side, trials),
+        value=lambda: {"run": used.id, "trials": numbers, **broken_json(used, trials)},
+        tables=lambda: broken_tables(used, trials),
     )
     tried_in_vain = [
         number

@@ -33,6 +33,7 @@ from affcli.core.records import LearningRunInfo
 from affcli.errors import UsageError, one_line
 from affcli.lab.drawing import require_figures
 from affcli.report import figures
+from affcli.report.curves import curves_title, robots_title
 from affcli.simulation.arm import reach_at
 from affcli.simulation.tasks.extension_of_reach import extension_of_reach
 
@@ -222,13 +223,12 @@ def learning(
     names = tool or ()
     with opened(database) as store:
         if session is not None:
-            title, tools = lab.learning_curves.curves_of_robots(store, session, names)
-            figure = figures.learning.bands_figure(tools)
+            info, tools = lab.learning_curves.curves_of_robots(store, session, names)
+            title, figure = robots_title(info, tools), figures.learning.bands_figure(tools)
         else:
-            title, curves = lab.learning_curves.curves_of(
-                store, _runs_to_draw(store, run or (), names, database)
-            )
-            figure = figures.learning.curves_figure(curves)
+            runs = _runs_to_draw(store, run or (), names, database)
+            curves = lab.learning_curves.curves_of(store, runs)
+            title, figure = curves_title(curves), figures.learning.curves_figure(curves)
     save_figure(out, figure, title)
 
 

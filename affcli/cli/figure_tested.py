@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 
 from affcli import lab
+from affcli.analysis.statistics import ENOUGH_ROBOTS
 from affcli.cli.database import opened
 from affcli.cli.figure_learned import check_out, save_figure
 from affcli.cli.files import save
@@ -19,8 +20,9 @@ from affcli.cli.options import (
 from affcli.cli.terminal import say
 from affcli.errors import BadInputError, one_line
 from affcli.report import figures
+from affcli.report.adaptation import course_title
 from affcli.report.film import MOST_NAMED, shown_of
-from affcli.report.reproduction import ENOUGH_ROBOTS
+from affcli.report.results import few_robots_note, results_title
 
 Session = Annotated[
     int | None,
@@ -85,14 +87,15 @@ def results(
     with opened(database) as store:
         found = lab.results.results_in(store, session)
     save(out, figures.canvas.encoded(figures.results.results_figure(found), out.suffix))
+    title = results_title(found)
     if found.session is None:
         say(
-            f"no finished reproduction, so results of {found.title}: {one_line(out)}; for those of "
-            f"many robots run affcli reproduce --robots {ENOUGH_ROBOTS}"
+            f"no finished reproduction, so results of {title}: {one_line(out)}; for those of many "
+            f"robots run affcli reproduce --robots {ENOUGH_ROBOTS}"
         )
     else:
-        note = f", {found.note}" if found.note else ""
-        say(f"results, session {found.session}: {found.title}{note}: {one_line(out)}")
+        note = _note(found.robots)
+        say(f"results, session {found.session.id}: {results_title(found)}{note}: {one_line(out)}")
 
 
 def adaptation(
@@ -110,6 +113,14 @@ def adaptation(
     check_out(out, force=force)
     with opened(database) as store:
         course = lab.adaptation.adaptation_in(store, session)
-    note = f", {course.note}" if course.note else ""
+    note = _note(course.session.spec.robots)
     figure = figures.adaptation.adaptation_figure(course)
-    save_figure(out, figure, f"adaptation, session {course.session}: {course.title}{note}")
+    save_figure(
+        out, figure, f"adaptation, session {course.session.id}: {course_title(course)}{note}"
+    )
+
+
+def _note(robots: int) -> str:
+    """Return why a figure has no intervals."""
+    note = few_robots_note(robots)
+    return f", {note}" if note else ""

@@ -11,7 +11,7 @@ from affcli.cli.database import opened
 from affcli.cli.files import require_new, save
 from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database, Force, check_count
 from affcli.cli.terminal import progress, say, show_either
-from affcli.core.trial import MOST_ROBOTS
+from affcli.core.specs import MOST_ROBOTS
 from affcli.errors import BadInputError, UsageError, one_line
 from affcli.report import page
 from affcli.report.overview import overview_json, overview_tables
@@ -86,5 +86,7 @@ def _as_page(html: Path, robot: int | None, session: int | None, database: Path)
     save(html, page.rendering.render(content, command).encode("utf-8", "backslashreplace"))
     differing = sum(bool(replay.differences) for replay in content.replays)
     say(f"{content.robot}, {len(content.replays)} trials to replay: {one_line(html)}")
+    for number, reason in content.not_replayed.items():
+        say(f"trial {number} is left out: {reason}")
     if differing:
         say(f"{differing} replays DIFFER from their record; see: affcli replay --all")

@@ -64,11 +64,11 @@ def solve(
             steps.append([])
             if explain and not as_json:
                 show(explain_trial(event.trial, event.end, steps[-2]))
-    used = {one.spec.tool: one.id for one in runs}
+    used = {one.spec.tool: one for one in runs}
     show_either(
         as_json=as_json,
         value=lambda: [
-            {"trial": one.id, "run": used[one.trial.tool]}
+            {"trial": one.id, "run": used[one.trial.tool].id}
             | trial_json(one.trial, one.end, taken if explain else None)
             for one, taken in zip(trials, steps[:-1], strict=True)
         ],

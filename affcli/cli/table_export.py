@@ -10,7 +10,7 @@ import typer
 from affcli import lab, report
 from affcli.cli.database import opened
 from affcli.cli.files import require_new, save
-from affcli.cli.options import DEFAULT_DATABASE, Database, Force, one_of
+from affcli.cli.options import DEFAULT_DATABASE, Database, Force
 from affcli.cli.table_choice import (
     AllRuns,
     Behavior,
@@ -23,14 +23,14 @@ from affcli.cli.table_choice import (
     chosen_runs,
 )
 from affcli.cli.terminal import say, show_text
+from affcli.core.names import one_of
+from affcli.core.row_filter import Column, Relation
 from affcli.errors import BadInputError, UsageError, one_line
 from affcli.report.csv_table import csv_lines
 from affcli.report.json_table import json_lines
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
-
-    from affcli.store import Column, Relation
 
 RELATIONS: "tuple[Relation, ...]" = ("rows", "behaviors", "trials", "steps")
 STDOUT = Path("-")

@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 
 from affcli import lab
+from affcli.analysis.regions import region_of
 from affcli.cli.database import opened
 from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database, check_count
 from affcli.cli.terminal import show_either
@@ -26,10 +27,10 @@ def show_row(
     step of a trial and try of a verification that used it.
     """
     with opened(database) as store:
-        stored = store.affordance(row_id)
-        run = store.learning_run(stored.run_id)
+        stored = store.learning.row(row_id)
+        run = store.learning.run(stored.run_id)
         history = lab.table.history_of(store, row_id)
-        tries = store.row_tries(row_id)
-    region = lab.table.region_of(lab.table.tool_of(run), stored)
+        tries = store.verifications.of_row(row_id)
+    region = region_of(run.spec.held, stored.row)
     found = (stored, region, run, history, tries)
     show_either(as_json=as_json, value=lambda: row_json(*found), tables=lambda: row_tables(*found))

@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 
 from affcli import lab
+from affcli.analysis.verification import Verification
 from affcli.cli.database import learned_runs, opened, tool_or_default
 from affcli.cli.options import (
     DEFAULT_DATABASE,
@@ -19,7 +20,7 @@ from affcli.cli.options import (
     check_count,
 )
 from affcli.cli.terminal import now, progress, show_either
-from affcli.report.verification import Verification, verification_json, verification_tables
+from affcli.report.verification import verification_json, verification_tables
 
 
 def verify(

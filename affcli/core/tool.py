@@ -5,10 +5,12 @@ right. Hand frame: origin at the wrist, y where the wrist points. A tool that is
 in the hand frame; on the table it is these turned by the wrist's angle and moved to the wrist.
 """
 
+import math
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any, NamedTuple, NewType
 
+from affcli.core.behavior import BehaviorCall
 from affcli.core.geometry import ConvexPolygon, Point, Pose
 from affcli.core.identity import key_of
 
@@ -109,6 +111,11 @@ class Tool:
     def key(self) -> str:
         """The key of the tool's value: equal for the same name, colour and outlines."""
         return key_of(self.canonical())
+
+
+def hold_of(binding: BehaviorCall) -> Hold:
+    """Return how a grasp holds the tool; KeyError for a binding that names no grasp point."""
+    return Hold(binding["grasp_point"], math.radians(binding.get("angle", 0.0)))
 
 
 def tool_from_canonical(value: Any) -> Tool:

@@ -1,10 +1,10 @@
 """A stored trial, gathered for its film strip."""
 
-from affcli.behaviors.grasping import hold_of
 from affcli.core.behavior import BehaviorCall
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.geometry import Pose
 from affcli.core.records import StoredStep, TrialInfo
+from affcli.core.tool import hold_of
 from affcli.errors import UsageError, one_line
 from affcli.lab.replaying import require_shape
 from affcli.lab.run_parts import settings_of

@@ -1,20 +1,17 @@
-"""How learning went over robot time, gathered for figures."""
+"""How learning went over robot time, read for figures."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 
-from affcli.core.tool import TOOL_PARTS
-from affcli.errors import DatabaseError, UsageError
-from affcli.report.curves import INTERVALS, Curve, Interval, ToolCurves
-from affcli.report.figures.words import tool_words
-from affcli.store import LearningInterval, LearningRunInfo, Store
-
-LONGEST = 1e12
-"""Seconds: no run takes so long."""
+from affcli.analysis.curves import INTERVALS, Curve, ToolCurves
+from affcli.core.records import LearningRunInfo, SessionInfo
+from affcli.core.results import LearningInterval
+from affcli.errors import UsageError
+from affcli.store import Store
 
 
-def curves_of(store: Store, runs: Sequence[LearningRunInfo]) -> tuple[str, list[Curve]]:
-    """Return one curve a learning run, up to the time it has come to; and in words what they are.
+def curves_of(store: Store, runs: Sequence[LearningRunInfo]) -> list[Curve]:
+    """Return one curve a learning run, up to the time it has come to.
 
     Args:
         store: open.
@@ -24,15 +21,14 @@ def curves_of(store: Store, runs: Sequence[LearningRunInfo]) -> tuple[str, list[
         UsageError: a run has not begun.
     """
     seconds = _seconds(runs)
-    did = _by_run(store.learning_progress(seconds, run_ids=[run.id for run in runs]))
-    curves = [Curve.of(_name(run), did[run.id], seconds, run.robot_seconds) for run in runs]
-    return f"learning of {', '.join(curve.name for curve in curves)}", curves
+    did = _by_run(store.results.learning_intervals(seconds, run_ids=[run.id for run in runs]))
+    return [Curve.of(run, did[run.id], seconds) for run in runs]
 
 
 def curves_of_robots(
     store: Store, session_id: int, tools: Sequence[str] = ()
-) -> tuple[str, list[ToolCurves]]:
-    """Return the mean and spread of a reproduction's robots by tool; and in words what they are.
+) -> tuple[SessionInfo, list[ToolCurves]]:
+    """Return a reproduction, and the mean and spread of its robots by tool.
 
     Args:
         store: open.
@@ -42,30 +38,21 @@ def curves_of_robots(
     Raises:
         UsageError: there is no such reproduction, or none of its robots is saved.
     """
-    sessions = {session.id: session for session in store.sessions("reproduce")}
+    sessions = {session.id: session for session in store.sessions.all("reproduce")}
     if session_id not in sessions:
         known = ", ".join(map(str, sessions))
         there_are = f"there is {known}" if known else "there is none yet"
         raise UsageError(f"--session {session_id}: no such reproduction; {there_are}")
-    runs = [
-        run
-        for run in store.learning_runs(session_id=session_id)
-        if not tools or run.spec.tool in tools
-    ]
+    stored = store.learning.runs(session_id=session_id)
+    runs = [run for run in stored if not tools or run.spec.tool in tools]
     if not runs:
         raise UsageError(f"--session {session_id}: no robot saved yet; go on with it first")
     seconds = _seconds(runs)
-    did = _by_run(store.learning_progress(seconds, session_id=session_id, tools=tools))
-    curves = defaultdict(list)
+    did = _by_run(store.results.learning_intervals(seconds, session_id=session_id, tools=tools))
+    curves: dict[str, list[Curve]] = defaultdict(list)
     for run in runs:
-        curve = Curve.of(_name(run), did[run.id], seconds, run.robot_seconds)
-        curves[run.spec.tool].append(curve)
-    order = dict.fromkeys([*map(str, TOOL_PARTS), *curves])
-    by_tool = [ToolCurves.of(name, curves[name]) for name in order if name in curves]
-    unfinished = "" if sessions[session_id].status == "done" else ", unfinished"
-    robots = max(tool.robots for tool in by_tool)
-    words = f"{robots} robot{'' if robots == 1 else 's'}"
-    return f"learning of {words} (session {session_id}{unfinished})", by_tool
+        curves[run.spec.tool].append(Curve.of(run, did[run.id], seconds))
+    return sessions[session_id], [ToolCurves.of(tool, some) for tool, some in curves.items()]
 
 
 def _seconds(runs: Sequence[LearningRunInfo]) -> float:
@@ -73,23 +60,12 @@ def _seconds(runs: Sequence[LearningRunInfo]) -> float:
     for run in runs:
         if run.robot_seconds == 0.0:
             raise UsageError(f"run {run.id} has not begun; go on with it first")
-        if not 0.0 < run.robot_seconds <= LONGEST:
-            raise DatabaseError(
-                f"learning run {run.id} holds a value that affcli did not write; restore a copy of "
-                "the database"
-            )
     return max(run.robot_seconds for run in runs) / INTERVALS
 
 
-def _by_run(intervals: Iterable[LearningInterval]) -> dict[int, list[Interval]]:
+def _by_run(intervals: Iterable[LearningInterval]) -> dict[int, list[LearningInterval]]:
     """Return the intervals of each run."""
-    by_run: dict[int, list[Interval]] = defaultdict(list)
+    by_run: dict[int, list[LearningInterval]] = defaultdict(list)
     for interval in intervals:
         by_run[interval.run_id].append(interval)
     return by_run
-
-
-def _name(run: LearningRunInfo) -> str:
-    """Return what a run is called in a figure: ``T-hook (run 5)``."""
-    unfinished = "" if run.status == "done" else ", unfinished"
-    return f"{tool_words(run.spec.tool)} (run {run.id}{unfinished})"

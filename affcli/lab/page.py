@@ -1,20 +1,19 @@
-"""Gathering what the page shows: one robot's tools and trials, and what many robots gave."""
+"""Reading what the page shows: one robot's tools and trials, and what many robots gave."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
-from affcli.config import differences, settings_from_json
+from affcli.analysis.paper import TOOLS
+from affcli.analysis.reproduction import Reproduction
+from affcli.core.records import LearningRunInfo, SessionInfo, TrialInfo
 from affcli.core.replay import Replay
-from affcli.core.tool import TOOL_PARTS
-from affcli.core.trial import Counters
-from affcli.errors import UsageError, one_line
-from affcli.lab.bench import missing_side, tool_named
+from affcli.core.specs import Counters
+from affcli.errors import AffcliError, UsageError, one_line
 from affcli.lab.overview import reproduction_of
-from affcli.lab.plausible import check_rows, check_trial, not_written
 from affcli.lab.replaying import replay_trial
 from affcli.report.page.content import Broken, Content, LearnedRows
-from affcli.report.reproduction import Reproduction
-from affcli.store import LearningRunInfo, SessionInfo, Store, TrialInfo
+from affcli.report.words import in_order
+from affcli.store import Store
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,8 +21,8 @@ class _Life:
     """One robot: what it learned and which of its trials are shown."""
 
     name: str
-    runs: list[LearningRunInfo]
-    trials: list[TrialInfo]
+    runs: Sequence[LearningRunInfo]
+    trials: Sequence[TrialInfo]
     left_out: int
 
 
@@ -47,22 +46,29 @@ def content_of(
     """
     result = _reproduction(store, session)
     life = _life(store, robot, session, result)
-    tools = [_learned(store, run) for run in life.runs]
-    replays = []
+    tools = [
+        LearnedRows(run, {row.id: row.row for row in store.learning.rows(run.id)})
+        for run in life.runs
+    ]
+    replays, not_replayed = [], {}
     for number, trial in enumerate(life.trials, 1):
-        replays.append(replay_trial(store, trial.id))
+        # What this affcli cannot do again is said on the page, and the rest is shown.
+        try:
+            replays.append(replay_trial(store, trial.id))
+        except AffcliError as error:
+            not_replayed[trial.id] = str(error)
         done(number, len(life.trials))
+    versions = life.runs[-1].versions
     return Content(
         database=one_line(store.path.name),
         robot=life.name,
         reproduction=result,
         tools=tools,
         replays=replays,
+        not_replayed=not_replayed,
         left_out=life.left_out,
-        broken=_broken(store, replays),
-        versions={
-            one_line(name): one_line(version) for name, version in life.runs[-1].versions.items()
-        },
+        broken=_broken(tools, replays),
+        versions={one_line(name): one_line(version) for name, version in versions.items()},
     )
 
 
@@ -71,16 +77,12 @@ def _reproduction(store: Store, session: int | None) -> Reproduction | None:
     found = _session(store, session)
     if found is None:
         return None
-    robots = store.saved_robots(found.id)
-    # They are saved in the order of their numbers.
-    if robots != set(range(len(robots))):
-        raise not_written(f"session {found.id}")
-    return reproduction_of(store, found.id, len(robots))
+    return reproduction_of(store, found.id, len(store.sessions.saved_robots(found.id)))
 
 
 def _session(store: Store, session: int | None) -> SessionInfo | None:
     """Return a reproduction that has robots; the latest for None."""
-    sessions = [s for s in store.sessions("reproduce") if store.saved_robots(s.id)]
+    sessions = [s for s in store.sessions.all("reproduce") if store.sessions.saved_robots(s.id)]
     if session is None:
         return sessions[-1] if sessions else None
     found = [s for s in sessions if s.id == session]
@@ -94,10 +96,10 @@ def _life(
     store: Store, robot: int | None, session: int | None, result: Reproduction | None
 ) -> _Life:
     """Return the robot that is to be shown."""
-    latest = [run for run in map(store.latest_run, TOOL_PARTS) if run is not None]
+    latest = _latest_runs(store)
     if latest and robot is None and session is None:
-        every = [t for run in latest for t in store.trials(run_id=run.id)]
-        trials = _latest(every)
+        every = [t for run in latest for t in store.trials.trials(run_id=run.id)]
+        trials = _latest(every, [run.spec.tool for run in latest])
         seeds = sorted({run.spec.seed for run in latest})
         name = f"the robot of seed {', '.join(map(str, seeds))}"
         return _Life(name, latest, trials, len(every) - len(trials))
@@ -105,7 +107,7 @@ def _life(
         where = one_line(store.path)
         if robot is not None:
             raise UsageError(f"no robot {robot} in {where}: there is no reproduction in it")
-        begun = [str(run.id) for run in store.learning_runs(status="running")]
+        begun = [str(run.id) for run in store.learning.runs(status="running")]
         if begun:
             raise UsageError(
                 f"nothing learned in {where} yet: run {', '.join(begun)} is not finished; go on "
@@ -113,19 +115,26 @@ def _life(
             )
         raise UsageError(f"nothing learned in {where}; first run: affcli learn --tool t-hook")
     number = robot or 0
-    runs = [r for r in store.learning_runs(session_id=result.session) if r.spec.robot == number]
+    of = result.session
+    runs = [r for r in store.learning.runs(session_id=of.id) if r.spec.robot == number]
     if not runs:
         raise UsageError(
-            f"no robot {number} in session {result.session}; they are numbered 0 to "
-            f"{result.robots - 1}"
+            f"no robot {number} in session {of.id}; they are numbered 0 to {result.robots - 1}"
         )
-    name = f"robot {number} of {result.robots}, seed {result.seed}"
-    of_robot = [t for run in runs for t in store.trials(run_id=run.id)]
+    name = f"robot {number} of {result.robots}, seed {of.spec.seed}"
+    of_robot = [t for run in runs for t in store.trials.trials(run_id=run.id)]
     return _Life(name, runs, sorted(of_robot, key=lambda t: t.id), 0)
 
 
-def _latest(trials: Iterable[TrialInfo]) -> list[TrialInfo]:
-    """Return the latest trial of each kind, in the order of the paper's table.
+def _latest_runs(store: Store) -> list[LearningRunInfo]:
+    """Return the latest finished learning run of each tool, the paper's tools first."""
+    learned = dict.fromkeys(run.spec.tool for run in store.learning.runs(status="done"))
+    tools = dict.fromkeys([*(tool for tool in TOOLS if tool in learned), *learned])
+    return [run for run in map(store.learning.latest, tools) if run is not None]
+
+
+def _latest(trials: Iterable[TrialInfo], tools: Sequence[str]) -> list[TrialInfo]:
+    """Return the latest trial of each kind: by tool, goal and start, whole tools first.
 
     Of the trials with a whole tool those of `solve`, which go on with the counters as they are,
     come before those that `break-tool` does beside the broken ones.
@@ -133,54 +142,24 @@ def _latest(trials: Iterable[TrialInfo]) -> list[TrialInfo]:
     by_kind: dict[tuple[object, ...], TrialInfo] = {}
     for trial in sorted(trials, key=lambda t: (t.spec.counters is Counters.STORED, t.id)):
         spec = trial.spec
-        by_kind[spec.protocol, spec.tool, spec.shape, spec.goal, spec.start] = trial
-    tools = list(TOOL_PARTS)
+        kind = (spec.protocol, spec.tool, spec.shape, spec.task.task_set, spec.goal, spec.start)
+        by_kind[(*kind, str(spec.planner))] = trial
+    goals = in_order(trial.spec.goal for trial in by_kind.values())
+    starts = in_order(trial.spec.start for trial in by_kind.values())
 
-    def place(trial: TrialInfo) -> tuple[int, ...]:
+    def place(trial: TrialInfo) -> tuple[object, ...]:
         spec = trial.spec
-        check_trial(trial.id, spec)
-        return (spec.shape != spec.tool, tools.index(spec.tool), spec.goal, spec.start)  # type: ignore[arg-type]
+        which = (tools.index(spec.tool), goals.index(spec.goal), starts.index(spec.start))
+        return (spec.shape != spec.tool, *which, trial.id)
 
     return sorted(by_kind.values(), key=place)
 
 
-def _broken(store: Store, replays: Iterable[Replay]) -> list[Broken]:
+def _broken(tools: Iterable[LearnedRows], replays: Iterable[Replay]) -> list[Broken]:
     """Return each tool that became another shape, with the trials that tell what came of it."""
+    learned = {one.run.id: one for one in tools}
     adapted: dict[tuple[int, str], list[Replay]] = {}
     for replay in replays:
         if replay.spec.shape != replay.spec.tool and replay.end is not None:
             adapted.setdefault((replay.run_id, replay.spec.shape), []).append(replay)
-    found = []
-    for (run, shape), trials in adapted.items():
-        settings = settings_from_json(store.learning_run(run).spec.settings)
-        tool = trials[0].spec.tool
-        found.append(
-            Broken(
-                tool_named(settings, tool),
-                tool_named(settings, shape),
-                missing_side(settings, tool, shape),
-                {row.id: row.row for row in store.affordances(run)},
-                trials,
-            )
-        )
-    return found
-
-
-def _learned(store: Store, run: LearningRunInfo) -> LearnedRows:
-    """Return what one learning run left."""
-    settings = settings_from_json(run.spec.settings)
-    if run.spec.tool not in TOOL_PARTS:
-        raise not_written(f"learning run {run.id}")
-    rows = {row.id: row.row for row in store.affordances(run.id)}
-    check_rows(run.id, settings, rows.values())
-    return LearnedRows(
-        run=run.id,
-        tool=tool_named(settings, run.spec.tool),
-        seed=run.spec.seed,
-        robot=run.spec.robot,
-        behaviors=run.behaviors,
-        resets=run.resets,
-        robot_seconds=run.robot_seconds,
-        settings=differences(settings),
-        rows=rows,
-    )
+    return [Broken(learned[run], trials) for (run, _), trials in adapted.items()]

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from itertools import islice
 
 from affcli import registry
+from affcli.analysis.prediction import STAGES, Prediction, Push
 from affcli.core.affordance import Affordance, is_probable
 from affcli.core.identity import Component
 from affcli.core.observation import Movement, SensorKind, movement
@@ -16,7 +17,6 @@ from affcli.errors import UsageError
 from affcli.lab.run_parts import settings_of, world_of
 from affcli.planning.prediction import TablePredictor
 from affcli.procedures.babbling import BabblingState, babble
-from affcli.report.prediction import LEARNED_FROM, Foretold, Push
 from affcli.store import Store
 
 
@@ -67,7 +67,7 @@ class StagedTable:
     """
 
     def __init__(self, rows: list[Affordance]) -> None:
-        few = [number for number in LEARNED_FROM if number < len(rows)]
+        few = [number for number in STAGES if number < len(rows)]
         self._stages = {number: TablePredictor(rows[:number]) for number in (*few, len(rows))}
 
     def push(self, record: BabblingRecord) -> Push:
@@ -78,8 +78,8 @@ class StagedTable:
             moved=record.affordance is not None,
             seen=movement(record.start, record.end),
             wrist=Movement(end.x - start.x, end.y - start.y, 0.0),
-            foretold={
-                number: Foretold(table.predict(call, offset), table.mean_movement(call))
+            predicted={
+                number: Prediction(table.predict(call, offset), table.mean_movement(call))
                 for number, table in self._stages.items()
             },
         )

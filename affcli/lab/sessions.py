@@ -2,8 +2,9 @@
 
 from collections.abc import Sequence
 
+from affcli.core.records import SessionInfo
 from affcli.errors import UsageError, one_line
-from affcli.store import SessionInfo, SessionKind, Store
+from affcli.store import Store
 
 AGAIN = {
     "reproduce": "give the same affcli reproduce again: it goes on from there",
@@ -13,9 +14,7 @@ AGAIN = {
 """What to do about a session that was not finished, by its kind."""
 
 
-def finished_session(
-    store: Store, number: int | None, kinds: Sequence[SessionKind]
-) -> SessionInfo | None:
+def finished_session(store: Store, number: int | None, kinds: Sequence[str]) -> SessionInfo | None:
     """Return a finished session.
 
     Args:
@@ -29,19 +28,19 @@ def finished_session(
     Raises:
         UsageError: there is none of that number, or it is of another kind, or not finished.
     """
-    sessions = store.sessions()
+    sessions = store.sessions.all()
     if number is None:
-        finished = [s for s in sessions if s.kind in kinds and s.status == "done"]
-        return max(finished, key=lambda s: (s.finished_at or "", s.id), default=None)
+        finished = [s for s in sessions if s.spec.kind in kinds and s.status == "done"]
+        return max(finished, key=lambda s: s.id, default=None)
     found = next((s for s in sessions if s.id == number), None)
     if found is None:
         known = f"they are numbered 1 to {sessions[-1].id}" if sessions else "there are none yet"
         raise UsageError(f"no session {number}; {known}")
-    kind, wanted = one_line(found.kind, 40), " or ".join(kinds)
-    if found.kind not in kinds:
-        others = [str(s.id) for s in sessions if s.kind in kinds and s.status == "done"]
+    kind, wanted = one_line(found.spec.kind, 40), " or ".join(kinds)
+    if found.spec.kind not in kinds:
+        others = [str(s.id) for s in sessions if s.spec.kind in kinds and s.status == "done"]
         there = f"try --session {others[-1]}" if others else f"run affcli {kinds[0]} first"
         raise UsageError(f"session {number} is of affcli {kind}, not of {wanted}; {there}")
     if found.status != "done":
-        raise UsageError(f"session {number} is not finished; {AGAIN[found.kind]}")
+        raise UsageError(f"session {number} is not finished; {AGAIN[found.spec.kind]}")
     return found

@@ -3,6 +3,8 @@
 from collections.abc import Callable, Iterator
 from itertools import islice
 
+from affcli.analysis.regions import region_of
+from affcli.analysis.verification import JudgedTry
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.observation import SensorKind
 from affcli.core.ports import Setting
@@ -15,7 +17,6 @@ from affcli.errors import UsageError
 from affcli.lab.run_parts import world_of
 from affcli.lab.versions import versions
 from affcli.procedures.verification import verify as verify_rows
-from affcli.report.verification import Checked
 from affcli.store import Store
 
 
@@ -97,7 +98,7 @@ def verify(
     now: Callable[[], str],
     *,
     update: bool,
-) -> Iterator[Checked]:
+) -> Iterator[JudgedTry]:
     """Try the rows of a stored table again, from the counters as they are in the store.
 
     Args:
@@ -126,7 +127,6 @@ def verify(
         if update:
             store.verifications.save(number, record, truth, row_id)
         done.append(record)
-        nearest = run.spec.held.part_nearest(record.row.start.wrist_to_object)
-        yield Checked(record, row_id, nearest.name)
+        yield JudgedTry(record, row_id, region_of(run.spec.held, record.row))
     if update:
         store.verifications.end(number, Evidence.of(done).verdict, decided_after(done), now())

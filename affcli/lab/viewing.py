@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from affcli import registry
-from affcli.behaviors.grasping import hold_of
 from affcli.behaviors.positioning import position_wrist
 from affcli.config import Settings
 from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Observation
 from affcli.core.records import StepScene
 from affcli.core.scene import Scene
-from affcli.core.tool import PUCK_COLOR
+from affcli.core.tool import PUCK_COLOR, hold_of
 from affcli.lab.filming import FRAME_RATE, Reel
 from affcli.lab.run_parts import settings_of
 from affcli.simulation.robot import SimulatedRobot

@@ -1,131 +1,26 @@
-"""How learning went over robot time: rows made, and how often a behavior had an effect."""
+"""Words for curves of learning."""
 
-import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from itertools import accumulate
-from statistics import fmean
-from typing import Protocol
 
-from affcli.report.statistics import HIGH, LOW, quantile
-
-INTERVALS = 60
-"""Points of a curve."""
-ENOUGH_BEHAVIORS = 20
-"""Of fewer, a share says hardly anything: the curve of the share begins there."""
+from affcli.analysis.curves import Curve, ToolCurves
+from affcli.core.records import LearningRunInfo, SessionInfo
+from affcli.report.figures.words import tool_words
+from affcli.report.words import many
 
 
-class Interval(Protocol):
-    """What one learning run did in one interval of robot time."""
-
-    @property
-    def number(self) -> int:
-        """Of the interval: 0 is the first."""
-
-    @property
-    def behaviors(self) -> int:
-        """Exploratory behaviors that ended in it."""
-
-    @property
-    def effects(self) -> int:
-        """How many of these moved the attractor, which made as many rows."""
+def run_name(run: LearningRunInfo) -> str:
+    """Return what a run is called in a figure: ``T-hook (run 5)``."""
+    unfinished = "" if run.status == "done" else ", unfinished"
+    return f"{tool_words(run.spec.tool)} (run {run.id}{unfinished})"
 
 
-@dataclass(frozen=True, slots=True)
-class Curve:
-    """One learning run.
-
-    Args:
-        name: what it is called.
-        minutes: of robot time, from 0 to the end of the run.
-        rows: made by then.
-        share: of the behaviors by then that had an effect; NaN while they are few.
-    """
-
-    name: str
-    minutes: Sequence[float]
-    rows: Sequence[float]
-    share: Sequence[float]
-
-    @classmethod
-    def of(
-        cls, name: str, intervals: Iterable[Interval], seconds: float, robot_seconds: float
-    ) -> "Curve":
-        """Sum up what a run did.
-
-        Args:
-            name: what it is called.
-            intervals: what it did in each; those in which nothing ended may be left out.
-            seconds: length of an interval.
-            robot_seconds: the robot clock at its end.
-        """
-        count = max(1, math.ceil(round(robot_seconds / seconds, 9)))
-        behaviors, effects = [0] * (count + 1), [0] * (count + 1)
-        for interval in intervals:
-            # A behavior that ended on the last edge belongs to the last interval.
-            end = min(max(interval.number, 0) + 1, count)
-            behaviors[end] += interval.behaviors
-            effects[end] += interval.effects
-        rows = list(accumulate(effects))
-        share = [
-            made / done if done >= ENOUGH_BEHAVIORS else math.nan
-            for made, done in zip(rows, accumulate(behaviors), strict=True)
-        ]
-        ends = [min(number * seconds, robot_seconds) / 60.0 for number in range(count + 1)]
-        return cls(name, ends, [float(made) for made in rows], share)
+def curves_title(curves: Iterable[Curve]) -> str:
+    """Return which runs they are."""
+    return f"learning of {', '.join(run_name(curve.run) for curve in curves)}"
 
 
-@dataclass(frozen=True, slots=True)
-class Band:
-    """A number of many robots over time.
-
-    Args:
-        mean: over the robots.
-        low, high: the central 95 % of robots, as in the tables of `reproduce`.
-    """
-
-    mean: Sequence[float]
-    low: Sequence[float]
-    high: Sequence[float]
-
-    @classmethod
-    def of(cls, lines: Sequence[Sequence[float]]) -> "Band":
-        """Summarise lines of one length, one a robot; NaN where a robot has none."""
-        mean, low, high = [], [], []
-        for values in zip(*lines, strict=True):
-            known = not any(map(math.isnan, values))
-            mean.append(fmean(values) if known else math.nan)
-            low.append(quantile(values, LOW) if known else math.nan)
-            high.append(quantile(values, HIGH) if known else math.nan)
-        return cls(mean, low, high)
-
-
-@dataclass(frozen=True, slots=True)
-class ToolCurves:
-    """The learning runs of many robots with one tool, while all of them were learning.
-
-    Args:
-        tool: its name.
-        robots: how many.
-        minutes: of robot time.
-        rows, share: as in `Curve`.
-    """
-
-    tool: str
-    robots: int
-    minutes: Sequence[float]
-    rows: Band
-    share: Band
-
-    @classmethod
-    def of(cls, tool: str, curves: Sequence[Curve]) -> "ToolCurves":
-        """Summarise the runs of one tool, which share the length of their intervals."""
-        # The last point of a run is its own end, not that of an interval.
-        common = min(len(curve.minutes) for curve in curves) - 1
-        return cls(
-            tool,
-            len(curves),
-            curves[0].minutes[:common],
-            Band.of([curve.rows[:common] for curve in curves]),
-            Band.of([curve.share[:common] for curve in curves]),
-        )
+def robots_title(session: SessionInfo, tools: Sequence[ToolCurves]) -> str:
+    """Return whose learning it is."""
+    unfinished = "" if session.status == "done" else ", unfinished"
+    robots = many(max(tool.robots for tool in tools), "robot")
+    return f"learning of {robots} (session {session.id}{unfinished})"

@@ -1,75 +1,15 @@
 """Tables of what was learned (§6.1)."""
 
 from collections.abc import Iterable, Sequence
-from typing import Any, Protocol
+from typing import Any
 
-from affcli.core.behavior import BehaviorCall
-from affcli.core.geometry import direction_degrees
-from affcli.core.trial import LearningSpec
+from affcli.core.records import LearningRunInfo
+from affcli.core.results import BehaviorGroup
 from affcli.report.sheet import Sheet
+from affcli.report.words import call_words, clock, degrees_of, many, run_words
 
 
-class BehaviorGroup(Protocol):
-    """One moving behavior with one value of its parameter, in one learning run."""
-
-    @property
-    def call(self) -> BehaviorCall:
-        """The behavior with its parameter."""
-
-    @property
-    def tried(self) -> int:
-        """How often it was executed."""
-
-    @property
-    def rows(self) -> int:
-        """How many rows of the affordance table it made."""
-
-    @property
-    def mean_movement(self) -> float | None:
-        """Mean length of the rows' movements (in); None without rows."""
-
-    @property
-    def mean_dx(self) -> float | None:
-        """Mean movement along x (in); None without rows."""
-
-    @property
-    def mean_dy(self) -> float | None:
-        """Mean movement along y (in); None without rows."""
-
-
-class LearnedTool(Protocol):
-    """One learning run."""
-
-    @property
-    def id(self) -> int:
-        """Its number in the database."""
-
-    @property
-    def spec(self) -> LearningSpec:
-        """What it is a function of."""
-
-    @property
-    def status(self) -> str:
-        """``done`` or ``running``."""
-
-    @property
-    def behaviors(self) -> int:
-        """Behaviors executed so far."""
-
-    @property
-    def rows(self) -> int:
-        """Rows made so far."""
-
-    @property
-    def resets(self) -> int:
-        """How often the attractor was put back by hand."""
-
-    @property
-    def robot_seconds(self) -> float:
-        """Robot time so far (s)."""
-
-
-def groups_table(run: LearnedTool, groups: Iterable[BehaviorGroup]) -> Sheet:
+def groups_table(run: LearningRunInfo, groups: Iterable[BehaviorGroup]) -> Sheet:
     """Return the behavior-distance groups: tried, rows, mean movement and direction."""
     table = Sheet(
         ("behavior", "tried", "rows", "inches", "degrees"),
@@ -78,32 +18,26 @@ def groups_table(run: LearnedTool, groups: Iterable[BehaviorGroup]) -> Sheet:
         left=("behavior",),
     )
     for group in groups:
+        length, (dx, dy) = group.mean_movement, (group.mean_dx, group.mean_dy)
         table.add(
-            str(group.call),
+            call_words(group.call),
             str(group.tried),
             str(group.rows),
-            "-" if group.mean_movement is None else f"{group.mean_movement:.1f}",
-            _direction(group),
+            "-" if length is None else f"{length:.1f}",
+            "-" if dx is None or dy is None else str(degrees_of(dx, dy)),
         )
     return table
 
 
-def _direction(group: BehaviorGroup) -> str:
-    """Return the direction of the mean movement in degrees, - without rows."""
-    if group.mean_dx is None or group.mean_dy is None:
-        return "-"
-    return str(whole_degrees(direction_degrees(group.mean_dx, group.mean_dy)))
-
-
-def learned_table(tools: Sequence[tuple[LearnedTool, str]]) -> Sheet:
-    """Return the learning runs, each with how its settings differ from the defaults."""
+def learned_table(runs: Sequence[LearningRunInfo]) -> Sheet:
+    """Return the learning runs, each with what is not the paper's or the default in it."""
     table = Sheet(
         ("run", "tool", "seed", "robot time", "behaviors", "rows", "resets", "settings"),
         title="Tools learned",
         caption="resets: the attractor put back by hand",
         left=("tool", "settings"),
     )
-    for run, settings in tools:
+    for run in runs:
         unfinished = "" if run.status == "done" else " (unfinished)"
         table.add(
             str(run.id),
@@ -113,28 +47,15 @@ def learned_table(tools: Sequence[tuple[LearnedTool, str]]) -> Sheet:
             str(run.behaviors),
             str(run.rows),
             str(run.resets),
-            settings,
+            run_words(run.spec),
         )
     return table
 
 
-def clock(seconds: float) -> str:
-    """Return robot time as hours and minutes, or minutes and seconds below an hour."""
-    minutes, rest = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours} h {minutes:02} min" if hours else f"{minutes} min {rest:02} s"
-
-
-def whole_degrees(direction: float) -> int:
-    """Return a direction as whole degrees from 0 to 359."""
-    return round(direction) % 360
-
-
-def summary(run: LearnedTool) -> str:
+def summary(run: LearningRunInfo) -> str:
     """Return in words what a learning run gave, robot time first."""
     counts = ((run.behaviors, "behavior"), (run.rows, "row"), (run.resets, "reset"))
-    words = (f"{count} {noun}{'s' if count != 1 else ''}" for count, noun in counts)
-    return ", ".join([clock(run.robot_seconds), *words])
+    return ", ".join([clock(run.robot_seconds), *(many(count, noun) for count, noun in counts)])
 
 
 def groups_json(groups: Iterable[BehaviorGroup]) -> list[dict[str, Any]]:
@@ -153,15 +74,21 @@ def groups_json(groups: Iterable[BehaviorGroup]) -> list[dict[str, Any]]:
     ]
 
 
-def run_json(run: LearnedTool) -> dict[str, Any]:
+def run_json(run: LearningRunInfo) -> dict[str, Any]:
     """Return a learning run as JSON types."""
+    spec = run.spec
     return {
         "run": run.id,
-        "tool": run.spec.tool,
-        "seed": run.spec.seed,
+        "tool": spec.tool,
+        "seed": spec.seed,
         "status": run.status,
         "behaviors": run.behaviors,
         "rows": run.rows,
         "resets": run.resets,
         "robot_seconds": run.robot_seconds,
+        "world": str(spec.world),
+        "binding": str(spec.binding),
+        "explorer": str(spec.explorer),
+        "sensor": spec.sensor,
+        "repertoire": [str(one.call) for one in spec.repertoire],
     }

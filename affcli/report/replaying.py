@@ -13,10 +13,10 @@ from rich.text import Text
 from affcli.core.geometry import Point
 from affcli.core.replay import Difference, Replay, ReplayedBehavior, ReplayedStep
 from affcli.core.scene import Scene
-from affcli.core.specs import TrialSpec
 from affcli.core.workspace import Workspace
 from affcli.report.table_map import View, table_map
-from affcli.report.trials import movement_in_words, step_lines
+from affcli.report.trials import step_json, step_lines
+from affcli.report.words import call_words, movement_words, trial_words
 
 WIDE, MAP_WIDTH, MAP_ROWS = 72, 42, 18
 """From so many columns on the words stand beside the map; the map's largest size in letters."""
@@ -86,24 +86,20 @@ def phase_line(now: int, behavior: str) -> Text:
 
 def step_title(replay: Replay, number: int) -> str:
     """Return which trial, and which of its steps."""
-    return f"Trial {replay.trial_id}, step {number} of {len(replay.steps)}: {_which(replay.spec)}"
-
-
-def _which(spec: TrialSpec) -> str:
-    """Return in words which trial it is."""
-    truly = "" if spec.shape == spec.tool else f" (truly {spec.shape})"
-    return f"{spec.tool}{truly}, goal {spec.goal}, start {spec.start}"
+    return (
+        f"Trial {replay.trial_id}, step {number} of {len(replay.steps)}: {trial_words(replay.spec)}"
+    )
 
 
 def step_words(replay: Replay, step: ReplayedStep) -> tuple[list[str], list[str]]:
     """Return why a row was chosen in a step and which were next best; and what came of it."""
     chosen, *others = step.considered
     *why, happened, probability = step_lines(step.step.record, replay.spec.task.goal)
-    why = [f"row {chosen.id}: {chosen.row.exploratory}", "", *why]
+    why = [f"row {chosen.id}: {call_words(chosen.row.exploratory)}", "", *why]
     for other in others[:MOST_CLOSE]:
         why.append(
-            f"next best: row {other.id}, {other.row.exploratory}, {other.repositioning:.1f} in; "
-            f"should end {other.expected_distance:.1f} in from there"
+            f"next best: row {other.id}, {call_words(other.row.exploratory)}, "
+            f"{other.repositioning:.1f} in; should end {other.expected_distance:.1f} in from there"
         )
     lost = [f"truly lost: the {replay.spec.shape} cannot do it"] if step.step.lost else []
     return why, [happened, probability, *lost]
@@ -132,7 +128,7 @@ def trial_frames(replay: Replay, number: int, *, braille: bool) -> Iterator[Fram
 
 def opening_frame(replay: Replay, *, braille: bool) -> Frame:
     """Return the table of a trial that has no steps."""
-    title = f"Trial {replay.trial_id}, no steps: {_which(replay.spec)}"
+    title = f"Trial {replay.trial_id}, no steps: {trial_words(replay.spec)}"
     return Frame(title, Text(), replay.opening, (), (), replay.workspace, braille)
 
 
@@ -203,7 +199,7 @@ def behavior_words(behavior: ReplayedBehavior) -> list[str]:
     seen = record.affordance
     effect = "no movement detected: no row"
     if seen is not None:
-        effect = f"moved {movement_in_words(seen.expected_movement)}: a row"
+        effect = f"moved {movement_words(seen.expected_movement)}: a row"
     x, y = record.start.wrist_to_object
     return [
         str(record.execution.call),
@@ -240,10 +236,7 @@ def _step_json(one: ReplayedStep) -> dict[str, Any]:
     """Return one step as JSON types."""
     record, truth = one.step.record, one.step.truth
     return {
-        "step": record.number,
-        "row": one.considered[0].id,
-        "behavior": str(record.row.exploratory),
-        "reasons": [reason.as_json() for reason in record.reasons],
+        **step_json(one.considered[0].id, record, one.goal),
         "considered": [
             {
                 "row": each.id,
@@ -255,9 +248,6 @@ def _step_json(one: ReplayedStep) -> dict[str, Any]:
             }
             for each in one.considered
         ],
-        "expected": [record.expected.dx, record.expected.dy],
-        "seen": [record.seen.dx, record.seen.dy],
-        "replicated": record.replicated,
         "lost": one.step.lost,
         "true_start": None if truth is None else list(truth.start),
         "true_end": None if truth is None else list(truth.end),

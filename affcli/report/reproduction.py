@@ -1,73 +1,52 @@
-"""The paper's results beside those of many robots: numbers for JSON, and the table."""
+"""The paper's results beside those of many robots: numbers for JSON, and the tables."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from rich.text import Text
 
-from affcli.report.paper import BROKEN_TOOL, EXTENSION_OF_REACH, TOTAL
+from affcli.analysis.paper import (
+    BROKEN,
+    BROKEN_TRIALS,
+    EXTENSION_OF_REACH,
+    GOALS,
+    PLANNER,
+    TASK_SET,
+    TOOLS,
+    TOTAL,
+    TRIALS,
+    other_parts,
+)
+from affcli.analysis.reproduction import Reproduction, Solved
+from affcli.analysis.statistics import ENOUGH_ROBOTS, Spread
 from affcli.report.sheet import Sheet
-from affcli.report.statistics import Spread
-
-ENOUGH_ROBOTS = 20
-"""With fewer, the central 95 % of robots is hardly more than their range: nothing is marked."""
-
-
-@dataclass(frozen=True, slots=True)
-class Reproduction:
-    """What N robots gave.
-
-    Args:
-        robots: N.
-        cells: successes of 4 of each robot, by (tool, goal).
-        broken: successes of 16 of each robot with the broken tool.
-        failures: how often each kind of failure occurred, over both experiments.
-        trials: all trials of both experiments.
-        tries_on_lost: tries on lost affordances with the broken tool, over all its trials.
-        session: its number in the database.
-        seed: shared by its robots.
-        settings: how its settings differ from the defaults, in words.
-    """
-
-    robots: int
-    cells: Mapping[tuple[str, int], Sequence[int]]
-    broken: Sequence[int]
-    failures: Mapping[str, int]
-    trials: int
-    tries_on_lost: int
-    session: int
-    seed: int
-    settings: str
-
-    @property
-    def totals(self) -> list[int]:
-        """Successes of 80 of each robot."""
-        return [sum(column) for column in zip(*self.cells.values(), strict=True)]
+from affcli.report.words import in_order, many, parts_words, run_words, settings_words
 
 
 def reproduction_json(result: Reproduction) -> dict[str, Any]:
-    """Return the result as JSON types: 20 cells, the total, the broken tool, failures by kind."""
-    cells = []
-    for tool, counts in EXTENSION_OF_REACH.items():
-        for goal, paper in enumerate(counts, start=1):
-            mine = result.cells[tool, goal]
-            cells.append(
-                {
-                    "tool": tool,
-                    "goal": goal,
-                    **_against(mine, paper),
-                    "p_paper": sum(k == paper for k in mine) / len(mine),
-                }
-            )
+    """Return the result as JSON types: the paper's cells and sums, other trials, failures."""
     return {
         "robots": result.robots,
-        "seed": result.seed,
-        "session": result.session,
-        "settings": result.settings,
-        "cells": cells,
-        "total": _against(result.totals, TOTAL),
-        "broken": _against(result.broken, BROKEN_TOOL),
+        "seed": result.session.spec.seed,
+        "session": result.session.id,
+        "settings": settings_words(result.session.spec.settings),
+        "parts": other_parts(result.session.spec),
+        "cells": [
+            {
+                "tool": tool,
+                "goal": goal,
+                **_against(mine, EXTENSION_OF_REACH[tool, goal]),
+                "p_paper": mine.count(EXTENSION_OF_REACH[tool, goal]) / len(mine),
+            }
+            for (tool, goal), mine in result.cells.items()
+        ],
+        "total": _against(result.totals, TOTAL) if result.cells else None,
+        "broken": _against(result.broken, BROKEN) if result.broken else None,
+        "others": [
+            {**kind._asdict(), "goal": goal, "trials": solved.tried, **_spread(solved.counts)}
+            for kind, goals in result.others.items()
+            for goal, solved in goals.items()
+        ],
         "failures": dict(result.failures),
         "trials": result.trials,
         "tries_on_lost": result.tries_on_lost,
@@ -76,41 +55,53 @@ def reproduction_json(result: Reproduction) -> dict[str, Any]:
 
 def _against(counts: Sequence[int], paper: int) -> dict[str, Any]:
     """Return the spread of `counts` beside the paper's count."""
+    return {"paper": paper, **_spread(counts), "inside": Spread.of(counts).holds(paper)}
+
+
+def _spread(counts: Sequence[int]) -> dict[str, Any]:
+    """Return the spread of `counts` as JSON types."""
     spread = Spread.of(counts)
     return {
-        "paper": paper,
         "mean": spread.mean,
-        "mean_ci": list(spread.mean_ci),
+        "mean_ci": None if spread.mean_ci is None else list(spread.mean_ci),
         "low": spread.low,
         "high": spread.high,
-        "inside": spread.holds(paper),
     }
 
 
-def reproduction_tables(result: Reproduction) -> tuple[Sheet, Sheet, Sheet]:
-    """Return the paper's table with ours in its cells, the totals, and the failures."""
-    return (
-        _cells_table(result),
-        _totals_table(result),
+def reproduction_tables(result: Reproduction) -> list[Sheet]:
+    """Return the paper's table with ours in its cells, the totals, other trials, the failures."""
+    return [
+        *([_cells_table(result)] if result.cells else []),
+        *([_totals_table(result)] if result.cells or result.broken else []),
+        *([_others_table(result)] if result.others else []),
         failures_table(result.failures, result.trials),
-    )
+    ]
 
 
 def _cells_table(result: Reproduction) -> Sheet:
     """Return the paper's table: in each cell its count, our mean and central 95 % of robots."""
-    robots = f"{result.robots} robot{'s' if result.robots != 1 else ''}"
-    columns = ("tool", "goal 1", "goal 2", "goal 3", "goal 4")
+    columns = ("tool", *(f"goal {goal}" for goal in GOALS))
     table = Sheet(
         columns,
-        title=f"Extension of reach: paper|mean of {robots} [central 95 %]",
-        caption=f"successes of 4 starts; {_note(result.robots)}\n"
-        f"session {result.session}, seed {result.seed}, settings: {result.settings}",
+        title=f"Extension of reach: paper|mean of {many(result.robots, 'robot')} [central 95 %]",
+        caption=f"successes of 4 starts; {_note(result.robots)}\n{_session(result)}",
         left=columns,
     )
-    for tool, counts in EXTENSION_OF_REACH.items():
-        cells = [_cell(result.cells[tool, goal], paper) for goal, paper in enumerate(counts, 1)]
+    for tool in TOOLS:
+        cells = (
+            _marked(f"{paper}|{_cell(counts)}", counts, paper)
+            for goal in GOALS
+            for paper, counts in [(EXTENSION_OF_REACH[tool, goal], result.cells[tool, goal])]
+        )
         table.add(tool, *cells)
     return table
+
+
+def _session(result: Reproduction) -> str:
+    """Return which session it is, and what is not the usual in it."""
+    spec = result.session.spec
+    return f"session {result.session.id}, seed {spec.seed}, settings: {run_words(spec)}"
 
 
 def _totals_table(result: Reproduction) -> Sheet:
@@ -120,21 +111,61 @@ def _totals_table(result: Reproduction) -> Sheet:
         left=("all trials",),
     )
     for name, counts, paper in (
-        ("extension of reach, of 80", result.totals, TOTAL),
-        ("broken tool, of 16", result.broken, BROKEN_TOOL),
+        (f"extension of reach, of {TRIALS}", result.totals, TOTAL),
+        (f"broken tool, of {BROKEN_TRIALS}", result.broken, BROKEN),
     ):
-        spread = Spread.of(counts)
-        low, high = spread.mean_ci
-        robots = _marked(f"[{spread.low},{spread.high}]", counts, paper)
-        table.add(name, str(paper), f"{spread.mean:.1f}", f"{low:.1f} to {high:.1f}", robots)
+        if counts:
+            spread = Spread.of(counts)
+            robots = _marked(f"[{spread.low},{spread.high}]", counts, paper)
+            table.add(name, str(paper), f"{spread.mean:.1f}", interval_words(spread), robots)
     return table
 
 
-def _cell(counts: Sequence[int], paper: int) -> Text:
-    """Return one cell: the paper's count, our mean, the central interval."""
+def interval_words(spread: Spread) -> str:
+    """Return the 95 % interval of a mean; - where one robot has none."""
+    return "-" if spread.mean_ci is None else "{:.1f} to {:.1f}".format(*spread.mean_ci)
+
+
+def _others_table(result: Reproduction) -> Sheet:
+    """Return successes of what the paper has not: kinds of trials by goal, and over all goals."""
+    kinds = list(result.others)
+    goals = in_order(goal for of_kind in result.others.values() for goal in of_kind)
+    named = {
+        "became": [kind.shape if kind.shape != kind.tool else "" for kind in kinds],
+        "planner": [kind.planner for kind in kinds],
+        "tasks": [kind.task_set for kind in kinds],
+    }
+    usual = {"became": "", "planner": PLANNER, "tasks": TASK_SET}
+    more = {name: cells for name, cells in named.items() if set(cells) != {usual[name]}}
+    parts = parts_words(result.session.spec)
+    columns = ("tool", *more, *(f"goal {goal}" for goal in goals), "all")
+    table = Sheet(
+        columns,
+        title=f"Not in the paper: mean of {many(result.robots, 'robot')} [central 95 %] of trials",
+        caption="\n".join(filter(None, (parts, _session(result) if not result.cells else ""))),
+        left=columns,
+    )
+    for number, kind in enumerate(kinds):
+        own = result.others[kind]
+        everything = Solved(
+            [sum(counts) for counts in zip(*(s.counts for s in own.values()), strict=True)],
+            sum(solved.tried for solved in own.values()),
+        )
+        cells = [_of(own[goal], result.robots) if goal in own else "-" for goal in goals]
+        named_cells = (values[number] for values in more.values())
+        table.add(kind.tool, *named_cells, *cells, _of(everything, result.robots))
+    return table
+
+
+def _of(solved: Solved, robots: int) -> str:
+    """Return the mean, the central 95 % of robots, and how many trials a robot had."""
+    return f"{_cell(solved.counts)} of {solved.tried / robots:g}"
+
+
+def _cell(counts: Sequence[int]) -> str:
+    """Return the mean of counts and their central 95 %."""
     spread = Spread.of(counts)
-    words = f"{paper}|{spread.mean:.1f} [{spread.low},{spread.high}]"
-    return _marked(words, counts, paper)
+    return f"{spread.mean:.1f} [{spread.low},{spread.high}]"
 
 
 def _marked(words: str, counts: Sequence[int], paper: int) -> Text:
@@ -151,16 +182,16 @@ def _note(robots: int) -> str:
 
 
 def failures_table(failures: Mapping[str, int], trials: int) -> Sheet:
-    """Return failures by kind, the commonest first.
+    """Return failures by kind.
 
     Args:
-        failures: how often each kind of failure occurred.
+        failures: how often each kind of failure occurred, the commonest first.
         trials: how many trials there were, the solved ones included.
     """
     table = Sheet(
         ("kind", "trials", "share of all trials"), title="Failures by kind", left=("kind",)
     )
-    for kind, count in sorted(failures.items(), key=lambda item: (-item[1], item[0])):
+    for kind, count in failures.items():
         table.add(kind, str(count), f"{100 * count / trials:.1f} %")
     if not failures:
         table.caption = f"no failures in {trials} trials"

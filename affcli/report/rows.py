@@ -1,116 +1,26 @@
 """Rows of affordance tables: listed, and one in full with all that was tried of it (§3.2, §6.1)."""
 
+import math
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any
 
 from rich.console import RenderableType
 from rich.text import Text
 
-from affcli.core.affordance import Affordance
+from affcli.analysis.paper import PLANNER
+from affcli.analysis.regions import UNKNOWN
+from affcli.core.affordance import Affordance, is_probable
 from affcli.core.geometry import Point, direction_degrees
-from affcli.core.observation import Movement, Observation
-from affcli.core.trial import LearningSpec, TrialSpec
-from affcli.core.verification import Tried
-from affcli.errors import one_line
-from affcli.report.learning import whole_degrees
+from affcli.core.observation import Observation
+from affcli.core.records import LearningRunInfo, StoredReplication, StoredRow, StoredStep
+from affcli.core.specs import TrialSpec
 from affcli.report.sheet import Sheet
+from affcli.report.words import call_words, degrees_of, fixed, many, movement_cell
 
 DIRECTIONS = "degrees: 0 right, 90 away from the robot, 180 left"
+USUAL_BINDING = "grasp 1"
 
-
-class StoredRow(Protocol):
-    """A row of an affordance table as it is stored."""
-
-    @property
-    def id(self) -> int:
-        """Its number in the database."""
-
-    @property
-    def run_id(self) -> int:
-        """The learning run that made it."""
-
-    @property
-    def tool(self) -> str:
-        """The tool held then."""
-
-    @property
-    def row(self) -> Affordance:
-        """What was learned, with its counters as they are now."""
-
-
-class LearningRun(Protocol):
-    """The learning run that made a row."""
-
-    @property
-    def id(self) -> int:
-        """Its number in the database."""
-
-    @property
-    def session_id(self) -> int | None:
-        """The reproduction it is part of; None when it stands for itself."""
-
-    @property
-    def spec(self) -> LearningSpec:
-        """What it is a function of."""
-
-    @property
-    def behaviors(self) -> int:
-        """Behaviors executed."""
-
-
-class TriedStep(Protocol):
-    """A step of a trial that tried a row."""
-
-    @property
-    def trial_id(self) -> int:
-        """The trial."""
-
-    @property
-    def number(self) -> int:
-        """Which of its steps."""
-
-    @property
-    def row(self) -> Affordance:
-        """The row with its counters before the step."""
-
-    @property
-    def placing_status(self) -> str:
-        """How the position wrist before it ended."""
-
-    @property
-    def status(self) -> str | None:
-        """How the exploratory behavior ended; None when the tool could not be lowered."""
-
-    @property
-    def expected(self) -> Movement:
-        """The movement the row predicts (in)."""
-
-    @property
-    def seen(self) -> Movement:
-        """The movement observed (in)."""
-
-    @property
-    def replicated(self) -> bool:
-        """Whether it counts as a success of the row."""
-
-    @property
-    def died(self) -> bool:
-        """Whether it excluded the row from then on."""
-
-    @property
-    def lost(self) -> bool | None:
-        """Whether the row was truly lost when the tool broke; None for a whole tool."""
-
-    @property
-    def times_used_after(self) -> int:
-        """The row's counter of uses after the step."""
-
-    @property
-    def times_successful_after(self) -> int:
-        """The row's counter of successes after the step."""
-
-
-Use = tuple[TriedStep, TrialSpec]
+Use = tuple[StoredStep, TrialSpec]
 """A step that tried a row, and the trial it is part of."""
 
 
@@ -123,24 +33,28 @@ def rows_table(rows: Sequence[tuple[StoredRow, str]], title: str, *, with_runs: 
         with_runs: name the learning run of each.
     """
     run = ("run",) if with_runs else ()
+    bindings = {call_words(stored.row.binding) for stored, _ in rows}
+    columns = ("behavior", "from wrist", "region", "inches", "degrees", "uses")
+    binding = ("binding",) if bindings - {USUAL_BINDING} else ()
     table = Sheet(
-        ("id", *run, "tool", "behavior", "from wrist", "region", "inches", "degrees", "uses"),
+        ("id", *run, "tool", *binding, *columns),
         title=title,
         caption="from wrist: the attractor before; region: the part of the tool it was nearest to; "
         f"{DIRECTIONS}; uses: successes/uses, at 1/2 or less the row is excluded",
-        left=("tool", "behavior", "region"),
+        left=("tool", "binding", "behavior", "region"),
     )
     for stored, region in rows:
         row, moved = stored.row, stored.row.expected_movement
         table.add(
             str(stored.id),
             *((str(stored.run_id),) if with_runs else ()),
-            one_line(stored.tool),
-            one_line(row.exploratory),
+            stored.tool,
+            *(call_words(row.binding) for _ in binding),
+            call_words(row.exploratory),
             _place(row.start.wrist_to_object),
             region,
             f"{moved.distance:.1f}",
-            str(_degrees(moved)),
+            str(degrees_of(moved.dx, moved.dy)),
             f"{row.times_successful}/{row.times_used}",
         )
     return table
@@ -154,9 +68,9 @@ def rows_json(rows: Sequence[tuple[StoredRow, str]]) -> list[dict[str, Any]]:
 def row_tables(
     stored: StoredRow,
     region: str,
-    run: LearningRun,
+    run: LearningRunInfo,
     history: Sequence[Use],
-    tries: Sequence[Tried] = (),
+    tries: Sequence[StoredReplication] = (),
 ) -> tuple[RenderableType, ...]:
     """Return one row in full, its two observation vectors, and all that tried it.
 
@@ -175,9 +89,9 @@ def row_tables(
 def row_json(
     stored: StoredRow,
     region: str,
-    run: LearningRun,
+    run: LearningRunInfo,
     history: Sequence[Use],
-    tries: Sequence[Tried] = (),
+    tries: Sequence[StoredReplication] = (),
 ) -> dict[str, Any]:
     """Return what `row_tables` shows as JSON types."""
     row = stored.row
@@ -194,23 +108,26 @@ def row_json(
     }
 
 
-def _facts(stored: StoredRow, region: str, run: LearningRun) -> Sheet:
+def _facts(stored: StoredRow, region: str, run: LearningRunInfo) -> Sheet:
     """Return what was done, what is expected of it, and how far it may be trusted."""
     row, moved = stored.row, stored.row.expected_movement
     part = "" if run.session_id is None else f", robot {run.spec.robot} of session {run.session_id}"
+    angle = round(math.degrees(row.wrist_angle), 1)
+    turned = f", the wrist at {angle:g} degrees" if angle else ""
+    near = "" if region == UNKNOWN else f", nearest the {region}"
     facts = {
         "tool": stored.tool,
         "learned": f"step {row.step} of run {run.id} (seed {run.spec.seed}{part})",
-        "done": f"{row.binding}, then {row.exploratory}",
-        "attractor from wrist": f"{_place(row.start.wrist_to_object)} in, nearest the {region}",
-        "expected movement": f"{moved.distance:.1f} in at {_degrees(moved)} degrees",
+        "done": f"{call_words(row.binding)}, then {call_words(row.exploratory)}{turned}",
+        "attractor from wrist": f"{_place(row.start.wrist_to_object)} in{near}",
+        "expected movement": f"{moved.distance:.1f} in at {degrees_of(moved.dx, moved.dy)} degrees",
         "truncated": "yes, at the edge of the arm's reach" if row.truncated else "no",
         "successes/uses": f"{row.times_successful}/{row.times_used}, "
         f"probability {row.replication_probability:.3g}",
         "excluded": "yes, at 1/2 or less" if _excluded(row) else "no",
     }
     sheet = Sheet(tuple(facts), title=f"Row {stored.id} of the affordance tables", records=True)
-    sheet.add(*map(one_line, facts.values()))
+    sheet.add(*facts.values())
     return sheet
 
 
@@ -224,7 +141,7 @@ def _observations(row: Affordance) -> Sheet:
     )
     components = zip(Observation._fields, row.start, row.end, strict=True)
     for number, (name, start, end) in enumerate(components, start=1):
-        sheet.add(f"o{number}", name.replace("_", " "), _fixed(start, 2), _fixed(end, 2))
+        sheet.add(f"o{number}", name.replace("_", " "), fixed(start, 2), fixed(end, 2))
     return sheet
 
 
@@ -232,50 +149,64 @@ def _history(history: Sequence[Use]) -> Sheet | Text:
     """Return the steps that tried a row."""
     if not history:
         return Text("No stored trial tried it.")
+    planner = ("planner",) if any(str(trial.planner) != PLANNER for _, trial in history) else ()
     sheet = Sheet(
-        ("trial", "shape", "step", "expected", "seen", "replicated", "successes/uses"),
-        title=f"Tried {len(history)} time{'s' if len(history) != 1 else ''}",
+        ("trial", "shape", *planner, "step", "expected", "seen", "replicated", "successes/uses"),
+        title=f"Tried {many(len(history), 'time')}",
         caption="shape: what the tool was then; expected, seen: inches at degrees; successes/uses: "
         "solve updates the stored ones, a trial of break-tool or reproduce counts from 1/1 for "
         "itself",
-        left=("shape", "replicated"),
+        left=("shape", "planner", "replicated"),
     )
     for step, trial in history:
-        before, after = step.row, (step.times_successful_after, step.times_used_after)
-        verdict = "yes" if step.replicated else "no"
-        if step.status is None:
-            verdict = f"no, {one_line(step.placing_status)}"
+        blocked = step.placing_status if step.status is None else ""
+        verdict = _verdict(replicated=step.replicated, blocked=blocked, died=step.died)
+        counters = (step.row.times_successful, step.row.times_used)
+        after = (step.times_successful_after, step.times_used_after)
         sheet.add(
             str(step.trial_id),
-            one_line(trial.shape),
+            trial.shape,
+            *(str(trial.planner) for _ in planner),
             str(step.number),
-            _moved(step.expected),
-            _moved(step.seen),
-            f"{verdict}, excluded" if step.died else verdict,
-            f"{before.times_successful}/{before.times_used} -> {after[0]}/{after[1]}",
+            movement_cell(step.expected),
+            movement_cell(step.seen),
+            f"{verdict}, grasped anew" if step.regrasped else verdict,
+            _counted(counters, after),
         )
     return sheet
 
 
-def _tries(tries: Sequence[Tried]) -> Sheet:
+def _tries(tries: Sequence[StoredReplication]) -> Sheet:
     """Return the tries of verifications, which update the stored counters."""
     sheet = Sheet(
         ("verification", "try", "shape", "expected", "seen", "replicated", "successes/uses"),
-        title=f"Tried by verify --update {len(tries)} time{'s' if len(tries) != 1 else ''}",
+        title=f"Tried by verify --update {many(len(tries), 'time')}",
         left=("shape", "replicated"),
     )
     for one in tries:
-        verdict = "yes" if one.replicated else "no, blocked" if one.blocked else "no"
         sheet.add(
             str(one.verification),
             str(one.number),
-            one_line(one.shape),
-            _moved(one.expected),
-            _moved(one.seen),
-            f"{verdict}, excluded" if one.died else verdict,
-            f"{one.before[0]}/{one.before[1]} -> {one.after[0]}/{one.after[1]}",
+            one.shape,
+            movement_cell(one.expected),
+            movement_cell(one.seen),
+            _verdict(
+                replicated=one.replicated, blocked="blocked" if one.blocked else "", died=one.died
+            ),
+            _counted(one.before, one.after),
         )
     return sheet
+
+
+def _verdict(*, replicated: bool, blocked: str, died: bool) -> str:
+    """Return whether a row replicated, why it was not executed, and whether that excluded it."""
+    words = ("yes" if replicated else "no", blocked, "excluded" if died else "")
+    return ", ".join(filter(None, words))
+
+
+def _counted(before: tuple[int, int], after: tuple[int, int]) -> str:
+    """Return successes and uses around a try."""
+    return f"{before[0]}/{before[1]} -> {after[0]}/{after[1]}"
 
 
 def _row_json(stored: StoredRow, region: str) -> dict[str, Any]:
@@ -289,6 +220,7 @@ def _row_json(stored: StoredRow, region: str) -> dict[str, Any]:
         "behavior": row.exploratory.name,
         "params": dict(row.exploratory.params),
         "truncated": row.truncated,
+        "wrist_angle_degrees": math.degrees(row.wrist_angle),
         "from_wrist": list(row.start.wrist_to_object),
         "region": region,
         "expected": [moved.dx, moved.dy],
@@ -301,7 +233,7 @@ def _row_json(stored: StoredRow, region: str) -> dict[str, Any]:
     }
 
 
-def _use_json(step: TriedStep, trial: TrialSpec) -> dict[str, Any]:
+def _use_json(step: StoredStep, trial: TrialSpec) -> dict[str, Any]:
     """Return a step that tried a row as JSON types."""
     return {
         "trial": step.trial_id,
@@ -310,7 +242,10 @@ def _use_json(step: TriedStep, trial: TrialSpec) -> dict[str, Any]:
         "goal": trial.goal,
         "start": trial.start,
         "counters": trial.counters.value,
+        "planner": str(trial.planner),
         "step": step.number,
+        "reasons": [reason.as_json() for reason in step.reasons],
+        "regrasped": step.regrasped,
         "placing_status": step.placing_status,
         "status": step.status,
         "expected": [step.expected.dx, step.expected.dy],
@@ -327,26 +262,9 @@ def _use_json(step: TriedStep, trial: TrialSpec) -> dict[str, Any]:
 
 def _excluded(row: Affordance) -> bool:
     """Tell whether the second search of §6.2 leaves the row out."""
-    return row.replication_probability <= 0.5
-
-
-def _moved(movement: Movement) -> str:
-    """Return a movement as inches at degrees."""
-    if movement.distance == 0.0:
-        return "none"
-    return f"{movement.distance:.1f} at {_degrees(movement)}"
-
-
-def _degrees(movement: Movement) -> int:
-    """Return the direction of a movement in whole degrees."""
-    return whole_degrees(direction_degrees(movement.dx, movement.dy))
+    return not is_probable(row.times_successful, row.times_used)
 
 
 def _place(offset: Point) -> str:
     """Return where the attractor was from the wrist (in), to the right and away."""
-    return f"{_fixed(offset.x, 1)}, {_fixed(offset.y, 1)}"
-
-
-def _fixed(value: float, digits: int) -> str:
-    """Return a number with so many digits, a plain 0 for the -0 that rounding may give."""
-    return f"{round(value, digits) + 0.0:.{digits}f}"
+    return f"{fixed(offset.x, 1)}, {fixed(offset.y, 1)}"

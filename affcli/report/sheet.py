@@ -8,8 +8,12 @@ from rich.console import Console, ConsoleOptions, RenderResult
 from rich.table import Table
 from rich.text import Text
 
+from affcli.errors import one_line
+
 GAP = 2
 """Blanks between two columns."""
+LONGEST = 1_000_000
+"""Letters of a cell."""
 
 
 @dataclass(slots=True)
@@ -17,7 +21,7 @@ class Sheet:
     """Rows under headings.
 
     Where the columns do not fit even with words wrapped, each row becomes a record, one heading and
-    value a line. Nothing is ever cut off.
+    value a line. Nothing is ever cut off; what is not printable is shown escaped.
 
     Args:
         columns: the headings.
@@ -39,12 +43,12 @@ class Sheet:
 
     def add(self, *cells: str | Text) -> None:
         """Add a row: one cell a column."""
-        self.rows.append(cells)
+        self.rows.append(tuple(c if isinstance(c, Text) else one_line(c, LONGEST) for c in cells))
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Draw for the width there is."""
         if self.title:
-            yield Text(self.title, style="bold")
+            yield Text(one_line(self.title, LONGEST), style="bold")
         widths = None if self.records else self._widths(options.max_width)
         if widths is not None:
             yield self._in_columns(widths)
@@ -54,7 +58,8 @@ class Sheet:
                     yield ""
                 yield self._record(row, options.max_width)
         if self.caption:
-            yield Text(self.caption, style="dim")
+            lines = (one_line(line, LONGEST) for line in self.caption.split("\n"))
+            yield Text("\n".join(lines), style="dim")
 
     def _widths(self, available: int) -> list[int] | None:
         """Return the columns' widths; None when there is no room for them."""

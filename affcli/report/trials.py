@@ -1,42 +1,50 @@
-"""Tables of testing trials of one robot, and the words for a step (§6.2, §7.1)."""
+"""Tables of testing trials of one robot, and why each row was chosen (§6.2, §7.1)."""
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
-from affcli.core.geometry import direction_degrees
-from affcli.core.observation import Movement
-from affcli.core.task import GoalRegion
-from affcli.core.trial import Outcome, StepRecord, Survivors, TrialEnd, TrialSpec
-from affcli.report.learning import whole_degrees
-from affcli.report.paper import EXTENSION_OF_REACH
+from affcli.analysis.overview import GoalCounts
+from affcli.analysis.paper import GOALS, PLANNER, STARTS, TASK_SET, other_parts, papers_successes
+from affcli.core.ports import Goal
+from affcli.core.records import LearningRunInfo
+from affcli.core.specs import TrialSpec
+from affcli.core.trial import Outcome, StepRecord, TrialEnd
 from affcli.report.sheet import Sheet
+from affcli.report.words import (
+    call_words,
+    in_order,
+    many,
+    movement_words,
+    parts_words,
+    reasons_words,
+    trial_words,
+)
+
+Steps = Sequence[tuple[int, StepRecord]]
+"""The steps of a trial, each with the number of its row in the store."""
 
 
-def explain_trial(
-    spec: TrialSpec, end: TrialEnd, steps: Sequence[tuple[int, StepRecord]], goal: GoalRegion
-) -> RenderableType:
-    """Return how a trial ended, and step by step why each row was chosen and what came of it.
-
-    Args:
-        spec: which trial.
-        end: how it ended.
-        steps: each with the number of its row in the store.
-        goal: of the trial.
-    """
+def explain_trial(spec: TrialSpec, end: TrialEnd, steps: Steps) -> RenderableType:
+    """Return how a trial ended, and step by step why each row was chosen and what came of it."""
     solved = end.outcome is Outcome.SOLVED
-    head = Text(f"{spec.tool}, goal {spec.goal}, start {spec.start}: ")
+    head = Text(f"{trial_words(spec)}: ")
     head.append(end.outcome.value, style="green" if solved else "red")
-    head.append(f" ({end.steps} step{'s' if end.steps != 1 else ''})")
+    head.append(f" ({many(end.steps, 'step')})")
     lines: list[RenderableType] = [head]
+    if str(spec.planner) != PLANNER:
+        lines.append(_indented(2, f"planner: {spec.planner}"))
     for row, step in steps:
-        lines.append(_indented(2, f"step {step.number}: row {row}, {step.row.exploratory}"))
-        lines += [_indented(4, line) for line in step_lines(step, goal)]
-    if end.last_survivors is not None:
-        lines.append(_indented(2, f"rows left: {_survivors(end.last_survivors)}"))
+        lines.append(
+            _indented(2, f"step {step.number}: row {row}, {call_words(step.row.exploratory)}")
+        )
+        lines += [_indented(4, line) for line in step_lines(step, spec.task.goal)]
+    if end.last_reasons is not None:
+        lines.append(_indented(2, f"rows left: {reasons_words(end.last_reasons, chosen=False)}"))
     return Group(*lines, "")
 
 
@@ -45,8 +53,8 @@ def _indented(by: int, line: str) -> Padding:
     return Padding(Text(line), (0, 0, 0, by), expand=False)
 
 
-def distances(step: StepRecord, goal: GoalRegion) -> tuple[float, float, float]:
-    """Return what searches 3 and 4 weighed (in).
+def distances(step: StepRecord, goal: Goal) -> tuple[float, float, float]:
+    """Return what a planner may weigh of a row (in).
 
     Returns:
         How far the attractor was seen from the goal's centre, how far the row expects to leave it,
@@ -55,94 +63,179 @@ def distances(step: StepRecord, goal: GoalRegion) -> tuple[float, float, float]:
     x, y = step.start.object_position
     now = math.dist((x, y), goal.center)
     then = math.dist((x + step.expected.dx, y + step.expected.dy), goal.center)
-    return now, then, math.dist(step.placing.wrist_start, step.placing.wrist_end)
+    start, end = step.placing.wrist_start, step.placing.wrist_end
+    return now, then, math.dist(start.point, end.point)
 
 
-def step_lines(step: StepRecord, goal: GoalRegion) -> tuple[str, ...]:
-    """Return the rows left by each search, why this one, the movements, and the probability."""
+def step_lines(step: StepRecord, goal: Goal) -> tuple[str, ...]:
+    """Return why a row was chosen in a step; the last two lines say what came of it."""
     row = step.row
     now, then, travel = distances(step, goal)
     x, y = step.start.object_position
-    expected, seen = movement_in_words(step.expected), movement_in_words(step.seen)
-    verdict = "replicated" if step.replicated else "not replicated"
-    if step.execution is None:
-        verdict = f"{step.placing.status}, counted as a failure"
-    if step.died:
-        verdict += ", row excluded from now on"
+    regrasped = (f"grasped anew: {call_words(row.binding)}",) if step.regrasped else ()
     before = f"{row.times_successful}/{row.times_used}"
     after = f"{step.times_successful_after}/{step.times_used_after}"
+    moved = f"expected {movement_words(step.expected)}, seen {movement_words(step.seen)}"
     return (
         f"attractor at ({x:.1f}, {y:.1f}), {now:.1f} in from the goal's centre",
-        f"rows left: {_survivors(step.survivors)}, 1 chosen",
-        f"chosen for least re-positioning, {travel:.1f} in; should end {then:.1f} in from there",
-        f"expected {expected}, seen {seen}: {verdict}",
+        f"rows left: {reasons_words(step.reasons)}",
+        *regrasped,
+        f"the wrist travels {travel:.1f} in to its place; should end {then:.1f} in from there",
+        f"{moved}: {verdict_words(step)}",
         f"probability {before} -> {after}",
     )
 
 
-def _survivors(left: Survivors) -> str:
-    """Return how many rows each search left."""
-    return (
-        f"{left.consistent} by colour, {left.probable} probable, {left.reachable} in reach, "
-        f"{left.nearest} nearest"
-    )
+def verdict_words(step: StepRecord) -> str:
+    """Return whether a step replicated its row, and whether that excluded it."""
+    verdict = "replicated" if step.replicated else "not replicated"
+    if step.execution is None:
+        verdict = f"{step.placing.status}, counted as a failure"
+    return f"{verdict}, row excluded from now on" if step.died else verdict
 
 
-def movement_in_words(movement: Movement) -> str:
-    """Return a movement as length and direction."""
-    if movement.distance == 0.0:
-        return "none"
-    direction = whole_degrees(direction_degrees(movement.dx, movement.dy))
-    return f"{movement.distance:.1f} in at {direction} deg"
+def trial_json(spec: TrialSpec, end: TrialEnd, steps: Steps | None = None) -> dict[str, Any]:
+    """Return a trial as JSON types; why each row was chosen when its steps are given.
+
+    Args:
+        spec: which trial.
+        end: how it ended.
+        steps: to be explained.
+    """
+    value: dict[str, Any] = {
+        "sensor": spec.sensor,
+        "planner": str(spec.planner),
+        "tool": spec.tool,
+        "goal": spec.goal,
+        "start": spec.start,
+        "outcome": end.outcome.value,
+        "steps": end.steps,
+        "robot_seconds": end.clock,
+    }
+    if steps is not None:
+        left = end.last_reasons
+        value["reasons_at_end"] = None if left is None else [one.as_json() for one in left]
+        value["explain"] = [step_json(row, record, spec.task.goal) for row, record in steps]
+    return value
+
+
+def step_json(row: int, record: StepRecord, goal: Goal) -> dict[str, Any]:
+    """Return a step as JSON types: why its row was chosen, and what came of it.
+
+    Args:
+        row: the number of the row in the store.
+        record: the step.
+        goal: of the trial.
+    """
+    now, then, travel = distances(record, goal)
+    return {
+        "step": record.number,
+        "row": row,
+        "behavior": str(record.row.exploratory),
+        "reasons": [reason.as_json() for reason in record.reasons],
+        "regrasped": record.regrasped,
+        "placing": record.placing.status.value,
+        "distance_to_goal": now,
+        "expected_distance_to_goal": then,
+        "repositioning": travel,
+        "expected": [record.expected.dx, record.expected.dy],
+        "seen": [record.seen.dx, record.seen.dy],
+        "replicated": record.replicated,
+        "excluded": record.died,
+        "probability_before": record.row.replication_probability,
+        "probability_after": record.times_successful_after / record.times_used_after,
+    }
 
 
 def solve_table(
-    goal: int, ends: Sequence[tuple[TrialSpec, TrialEnd]], runs: Mapping[str, int]
+    ends: Sequence[tuple[TrialSpec, TrialEnd]],
+    runs: Mapping[str, LearningRunInfo],
 ) -> Sheet:
     """Return the trials of one goal: a row a tool, a column a start.
 
     Args:
-        goal: 1 to 4.
         ends: the trials.
-        runs: the learning run whose table was used, by tool; named with the sensor.
+        runs: the learning run whose table was used, by tool.
     """
-    starts = sorted({spec.start for spec, _ in ends})
+    starts = in_order(spec.start for spec, _ in ends)
     columns = [f"start {start}" for start in starts]
-    sensors = {spec.tool: spec.sensor for spec, _ in ends}
-    used = ", ".join(f"run {runs[tool]} ({sensor})" for tool, sensor in sensors.items())
+    specs = {spec.tool: spec for spec, _ in ends}
+    paper = {
+        tool: None if other_parts(runs[tool].spec) else papers_successes(spec)
+        for tool, spec in specs.items()
+    }
+    used = [f"run {runs[tool].id} ({spec.sensor})" for tool, spec in specs.items()]
+    planners = {str(spec.planner) for spec in specs.values()} - {PLANNER}
+    notes = [", ".join(used), *(f"planner: {planner}" for planner in sorted(planners))]
+    compared = any(count is not None for count in paper.values())
     table = Sheet(
-        ("tool", *columns, "solved", "paper"),
-        title=f"Goal {goal}: outcome (steps) by start",
-        caption=f"{used}; counters of the rows used were updated in the stored table",
+        ("tool", *columns, "solved", *(("paper",) if compared else ())),
+        title=f"Goal {ends[0][0].goal}: outcome (steps) by start",
+        caption="; ".join([*notes, "counters of the rows used were updated in the stored table"]),
         left=("tool", *columns),
     )
-    for tool in dict.fromkeys(spec.tool for spec, _ in ends):
+    for tool in specs:
         mine = {spec.start: end for spec, end in ends if spec.tool == tool}
         solved = sum(end.outcome is Outcome.SOLVED for end in mine.values())
-        paper = f"{EXTENSION_OF_REACH[tool][goal - 1]}/4" if tool in EXTENSION_OF_REACH else "-"
-        cells = [f"{mine[s].outcome} ({mine[s].steps})" for s in starts]
-        table.add(tool, *cells, f"{solved}/{len(mine)}", paper)
+        cells = [f"{mine[s].outcome} ({mine[s].steps})" if s in mine else "-" for s in starts]
+        beside = f"{paper[tool]}/{STARTS}" if paper[tool] is not None else "-"
+        table.add(tool, *cells, f"{solved}/{len(mine)}", *((beside,) if compared else ()))
     return table
 
 
-def counts_table(solved: Mapping[tuple[int, str, str, int], tuple[int, int]]) -> Sheet:
-    """Return successes of single robots by learning run and goal beside the paper's.
+def counts_tables(counts: Sequence[GoalCounts], runs: Mapping[int, LearningRunInfo]) -> list[Sheet]:
+    """Return successes of single robots: those beside the paper's, and those it has not.
 
     Args:
-        solved: (solved, tried) by (learning run, tool, sensor, goal).
+        counts: by whose trials.
+        runs: the learning runs, by their numbers.
     """
+    papers = [one for one in counts if one.papers]
+    others = [one for one in counts if not one.papers]
+    tables = []
+    if papers:
+        tables.append(
+            Sheet(
+                ("run", "tool", "sensor", *(f"goal {goal}" for goal in GOALS)),
+                title="Extension of reach, by learning run",
+                caption="solved/tried|the paper's successes of 4",
+                left=("tool", "sensor"),
+            )
+        )
+        for one in papers:
+            cells = [f"{_count(one, goal)}|{one.paper(goal)}" for goal in GOALS]
+            tables[-1].add(str(one.by.run), one.by.tool, one.by.sensor, *cells)
+    if others:
+        tables.append(_others_table(others, runs))
+    return tables
+
+
+def _others_table(counts: Sequence[GoalCounts], runs: Mapping[int, LearningRunInfo]) -> Sheet:
+    """Return successes with what the paper has not."""
+    goals = in_order(goal for one in counts for goal in one.goals)
+    named = {
+        "planner": [one.by.planner for one in counts],
+        "tasks": [one.by.task_set for one in counts],
+        "parts": [
+            parts_words(runs[one.by.run].spec) if one.by.run in runs else "" for one in counts
+        ],
+    }
+    usual = {"planner": PLANNER, "tasks": TASK_SET, "parts": ""}
+    more = {name: values for name, values in named.items() if set(values) != {usual[name]}}
     table = Sheet(
-        ("run", "tool", "sensor", "goal 1", "goal 2", "goal 3", "goal 4"),
-        title="Extension of reach, by learning run",
-        caption="solved/tried|the paper's successes of 4",
-        left=("tool", "sensor"),
+        ("run", "tool", "sensor", *more, *(f"goal {goal}" for goal in goals)),
+        title="Other tools, tasks and planners, by learning run",
+        caption="solved/tried; the paper has nothing beside it",
+        left=("tool", "sensor", *more),
     )
-    for run, tool, sensor in dict.fromkeys(key[:3] for key in solved):
-        paper = EXTENSION_OF_REACH.get(tool, (None,) * 4)
-        cells = []
-        for goal in (1, 2, 3, 4):
-            good, tried = solved.get((run, tool, sensor, goal), (0, 0))
-            beside = "-" if paper[goal - 1] is None else str(paper[goal - 1])
-            cells.append(f"{good}/{tried}|{beside}" if tried else f"-|{beside}")
-        table.add(str(run), tool, sensor, *cells)
+    for number, one in enumerate(counts):
+        named_cells = (values[number] for values in more.values())
+        cells = (_count(one, goal) for goal in goals)
+        table.add(str(one.by.run), one.by.tool, one.by.sensor, *named_cells, *cells)
     return table
+
+
+def _count(counts: GoalCounts, goal: str) -> str:
+    """Return successes at one goal, - without trials."""
+    solved, tried = counts.goals.get(goal, (0, 0))
+    return f"{solved}/{tried}" if tried else "-"

@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from affcli.behaviors.grasping import hold_of
 from affcli.behaviors.positioning import wrist_target
 from affcli.core.behavior import (
     GRASP,
@@ -20,6 +19,7 @@ from affcli.core.geometry import Point, Pose
 from affcli.core.motion import Motion, Slide, Wait
 from affcli.core.observation import Observation
 from affcli.core.ports import Film
+from affcli.core.tool import hold_of
 from affcli.simulation.arm import reach_at
 from affcli.simulation.pushing import Moment
 from affcli.simulation.table import Table

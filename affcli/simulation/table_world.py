@@ -6,7 +6,6 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from affcli.behaviors.grasping import hold_of
 from affcli.core.affordance import Affordance, replicates
 from affcli.core.behavior import BehaviorCall
 from affcli.core.geometry import Pose
@@ -16,7 +15,7 @@ from affcli.core.ports import Film, Sensor
 from affcli.core.scene import Scene
 from affcli.core.specs import LearningSpec, RowStarts, TrialSpec, VerificationSpec
 from affcli.core.task import Task
-from affcli.core.tool import Tool
+from affcli.core.tool import Tool, hold_of
 from affcli.core.trial import Truth
 from affcli.core.workspace import Workspace
 from affcli.perception.camera_settings import CameraSettings

@@ -4,16 +4,17 @@ from collections.abc import Mapping, Sequence
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
+from affcli.analysis.row_status import RowStatus
 from affcli.core.affordance import Affordance
 from affcli.core.behavior import BehaviorCall
 from affcli.core.geometry import Point
-from affcli.report.fates import Fate, TableView
 from affcli.report.figures.arrows import LOOKS, Arrow, draw_arrows
 from affcli.report.figures.canvas import FAINT, ONE_COLUMN, TWO_COLUMNS, canvas
 from affcli.report.figures.key import draw_key
 from affcli.report.figures.maps import columns_for, fit_maps, map_panels
 from affcli.report.figures.things import draw_grasp, draw_parts, draw_puck
 from affcli.report.figures.words import call_words
+from affcli.report.table_views import TableView
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,7 +31,7 @@ MOST_BESIDE = 5
 
 
 def affordances_figure(
-    calls: Sequence[BehaviorCall], views: Sequence[TableView], key: Mapping[Fate, str]
+    calls: Sequence[BehaviorCall], views: Sequence[TableView], key: Mapping[RowStatus, str]
 ) -> "Figure":
     """Return the panels of one affordance table, or of several side by side.
 
@@ -41,11 +42,11 @@ def affordances_figure(
     Args:
         calls: the exploratory behaviors with their parameters; rows of others get panels too.
         views: the tables.
-        key: what each fate is called below the panels, where more than one occurs.
+        key: what each status is called below the panels, where more than one occurs.
     """
     groups = _groups([*calls, *(row.exploratory for view in views for row, _ in view.rows)])
     shown, columns = _arranged(groups, MOST_BESIDE // len(views) or 1)
-    kinds = [fate for fate in key if any(view.count(fate) for view in views)]
+    kinds = [status for status in key if any(view.count(status) for view in views)]
     with canvas(TWO_COLUMNS if columns * len(views) > 2 else ONE_COLUMN) as figure:
         beside = figure.add_gridspec(1, len(views))
         pages = [figure.add_subfigure(beside[0, number]) for number in range(len(views))]
@@ -55,7 +56,7 @@ def affordances_figure(
             for axes in _draw_table(page, view, shown, columns)
         ]
         if len(kinds) > 1:
-            draw_key(figure, [(LOOKS[fate], key[fate]) for fate in kinds])
+            draw_key(figure, [(LOOKS[status], key[status]) for status in kinds])
         # As much to the left as to the right: the wrist stays in the middle.
         half = max(abs(x) for axes in panels for x in axes.dataLim.intervalx)
         panels[0].update_datalim([(-half, 0.0), (half, 0.0)])
@@ -110,11 +111,11 @@ def _draw_panel(axes: "Axes", view: TableView, call: BehaviorCall) -> None:
     draw_parts(axes, view.parts)
     draw_parts(axes, view.missing, missing=True)
     draw_grasp(axes)
-    its_rows = [(row, fate) for row, fate in view.rows if row.exploratory == call]
-    for fate in Fate:
-        arrows = [_arrow(row) for row, its in its_rows if its is fate]
-        draw_arrows(axes, arrows, LOOKS[fate], HEAD)
-    words = _counts([fate for _, fate in its_rows])
+    its_rows = [(row, status) for row, status in view.rows if row.exploratory == call]
+    for status in RowStatus:
+        arrows = [_arrow(row) for row, its in its_rows if its is status]
+        draw_arrows(axes, arrows, LOOKS[status], HEAD)
+    words = _counts([status for _, status in its_rows])
     axes.text(0.97, 0.03, words, transform=axes.transAxes, ha="right", va="bottom", fontsize=6.5)
 
 
@@ -124,10 +125,10 @@ def _arrow(row: Affordance) -> Arrow:
     return start, Point(start.x + moved.dx, start.y + moved.dy)
 
 
-def _counts(fates: Sequence[Fate]) -> str:
-    """Return how many rows a panel has, one line a fate where there are several."""
-    counts = {fate: fates.count(fate) for fate in Fate if fate in fates}
-    if set(counts) <= {Fate.ROW}:
-        rows = len(fates)
+def _counts(statuses: Sequence[RowStatus]) -> str:
+    """Return how many rows a panel has, one line a status where there are several."""
+    counts = {status: statuses.count(status) for status in RowStatus if status in statuses}
+    if set(counts) <= {RowStatus.LIVE}:
+        rows = len(statuses)
         return f"{rows or 'no'} row{'' if rows == 1 else 's'}"
-    return "\n".join(f"{count} {fate.value}" for fate, count in counts.items())
+    return "\n".join(f"{count} {status.value}" for status, count in counts.items())

@@ -9,8 +9,8 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.legend_handler import HandlerBase
 from matplotlib.patches import Polygon
 
+from affcli.analysis.row_status import RowStatus
 from affcli.core.geometry import Point
-from affcli.report.fates import Fate
 from affcli.report.figures.canvas import BLUE, FAINT, GREEN, VERMILION
 
 if TYPE_CHECKING:
@@ -54,12 +54,12 @@ class Look:
         return (0, self.dashes) if self.dashes else "-"
 
 
-LOOKS: Mapping[Fate, Look] = {
-    Fate.ROW: Look(BLUE),
-    Fate.KEPT: Look(BLUE),
-    Fate.LOST: Look(VERMILION, (2.0, 1.2), hollow=True, width=0.9, level=6.0),
-    Fate.WON: Look(GREEN, (0.9, 0.9), hollow=True, width=1.0, level=6.0),
-    Fate.EXCLUDED: Look(FAINT, (2.0, 1.2), hollow=True, width=0.7, level=4.0),
+LOOKS: Mapping[RowStatus, Look] = {
+    RowStatus.LIVE: Look(BLUE),
+    RowStatus.KEPT: Look(BLUE),
+    RowStatus.LOST: Look(VERMILION, (2.0, 1.2), hollow=True, width=0.9, level=6.0),
+    RowStatus.WON: Look(GREEN, (0.9, 0.9), hollow=True, width=1.0, level=6.0),
+    RowStatus.EXCLUDED: Look(FAINT, (2.0, 1.2), hollow=True, width=0.7, level=4.0),
 }
 
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from affcli.report.curves import Curve, ToolCurves
+from affcli.analysis.curves import Curve, ToolCurves
+from affcli.report.curves import run_name
 from affcli.report.figures.canvas import (
     BLUE,
     GREEN,
@@ -21,7 +22,7 @@ from affcli.report.figures.canvas import (
 )
 from affcli.report.figures.key import draw_key
 from affcli.report.figures.maps import columns_for
-from affcli.report.figures.words import shown, tool_words
+from affcli.report.figures.words import tool_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -65,7 +66,7 @@ def curves_figure(curves: Sequence[Curve]) -> "Figure":
         _finish(above, below)
         above.set_ylabel(NAMES[0])
         below.set_ylabel(NAMES[1])
-        entries = [(line, shown(curve.name)) for line, curve in zip(lines, curves, strict=True)]
+        entries = [(line, run_name(curve.run)) for line, curve in zip(lines, curves, strict=True)]
         draw_key(figure, entries, "outside upper center")
     return figure
 

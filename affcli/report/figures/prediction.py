@@ -7,6 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
+from affcli.analysis.prediction import Errors, Push, Score, scores
+from affcli.analysis.statistics import wilson
 from affcli.report.figures.canvas import (
     BLUE,
     FAINT,
@@ -16,8 +18,7 @@ from affcli.report.figures.canvas import (
     canvas,
 )
 from affcli.report.figures.key import draw_key
-from affcli.report.prediction import PREDICTORS, Errors, Push, Score, scores
-from affcli.report.statistics import wilson
+from affcli.report.prediction import PREDICTORS
 
 CROWDED = 1.25
 """Two stages that differ by less than this factor share one number on the axis."""

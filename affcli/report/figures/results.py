@@ -11,10 +11,12 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
+from affcli.analysis.comparison import Beside, Results
+from affcli.analysis.paper import STARTS
 from affcli.report.figures.canvas import INK, PALE, SKY, TWO_COLUMNS, VERMILION, canvas, head
 from affcli.report.figures.key import draw_key
 from affcli.report.figures.maps import columns_for
-from affcli.report.results import STARTS, Beside, Results
+from affcli.report.results import few_robots_note, results_title
 
 MOST_BESIDE = 4
 """Goals in a row of the page."""
@@ -54,7 +56,8 @@ def results_figure(results: Results) -> Figure:
         for row, (name, beside) in enumerate(sums):
             _draw_sum(figure.add_subplot(grid[row, across]), name, beside)
         draw_key(figure, _key(results))
-        head(figure, "; ".join(filter(None, (results.title, results.note))))
+        words = (results_title(results), few_robots_note(results.robots))
+        head(figure, "; ".join(filter(None, words)))
     return figure
 
 
@@ -99,7 +102,7 @@ def _draw_ours(axes: Axes, y: float, beside: Beside) -> None:
             linewidth=5.0,
             solid_capstyle="round",
         )
-        low, high = spread.mean_ci
+        low, high = spread.mean_ci or (spread.mean, spread.mean)
         axes.errorbar(
             spread.mean, y, xerr=[[spread.mean - low], [high - spread.mean]],
             fmt="o", markersize=2.6, color=INK, capsize=2.0, elinewidth=0.8, zorder=4,

@@ -8,7 +8,6 @@ from matplotlib.lines import Line2D
 from affcli.core.affordance import Affordance
 from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Observation
-from affcli.report.fates import RowView
 from affcli.report.figures.arrows import Look, draw_arrows
 from affcli.report.figures.canvas import FAINT, INK, TWO_COLUMNS, canvas
 from affcli.report.figures.maps import fit_maps, map_panels
@@ -19,7 +18,9 @@ from affcli.report.figures.things import (
     draw_puck,
     round_length,
 )
-from affcli.report.figures.words import behavior_words, call_words, parameter_words
+from affcli.report.figures.words import behavior_words, call_words
+from affcli.report.table_views import RowView
+from affcli.report.words import parameter_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -2,6 +2,7 @@
 
 from affcli.core.behavior import BehaviorCall
 from affcli.errors import one_line
+from affcli.report.words import parameter_words
 
 LONGEST = 40
 """Characters of a name that are shown."""
@@ -22,13 +23,6 @@ def behavior_words(call: BehaviorCall) -> str:
     """Return a behavior's name as a sentence begins: ``Extend arm``."""
     name = shown(call.name)
     return name[:1].upper() + name[1:]
-
-
-def parameter_words(call: BehaviorCall) -> str:
-    """Return a behavior's parameters with their units: ``2 in``, or ``30 deg`` for an angle."""
-    return ", ".join(
-        f"{value:g} {'deg' if name.endswith('angle') else 'in'}" for name, value in call.params
-    )
 
 
 def call_words(call: BehaviorCall) -> str:

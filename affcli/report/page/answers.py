@@ -2,18 +2,28 @@
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
-from affcli.core.affordance import Affordance
+from affcli.analysis.breaking import DeadRow, Tally, dead_rows, missing_side
+from affcli.analysis.paper import (
+    BROKEN,
+    BROKEN_TRIALS,
+    EXTENSION_OF_REACH,
+    TOTAL,
+    TRIALS,
+    papers_breaking,
+)
+from affcli.analysis.regions import UNKNOWN, region_of
+from affcli.analysis.reproduction import Reproduction
+from affcli.analysis.statistics import ENOUGH_ROBOTS, Spread
+from affcli.core.affordance import Affordance, is_probable
 from affcli.core.replay import Replay
-from affcli.core.trial import Outcome, Protocol, TrialRecord
-from affcli.report.breaking import Tally
+from affcli.core.specs import Protocol, TrialRecord
+from affcli.core.trial import Outcome
+from affcli.errors import one_line
 from affcli.report.page.content import Broken, Content, LearnedRows
 from affcli.report.page.drawings import sector
-from affcli.report.paper import BROKEN_TOOL, EXTENSION_OF_REACH, TOTAL
-from affcli.report.reproduction import ENOUGH_ROBOTS, Reproduction
-from affcli.report.statistics import Spread
+from affcli.report.words import many
 
 MANY_ROBOTS = 40
 """With fewer, no robot lies outside the central 95 %."""
@@ -21,18 +31,26 @@ MANY_ROBOTS = 40
 
 def reproduced(result: Reproduction) -> str:
     """Return whether the paper's table is reproduced by many robots."""
-    total, broken = Spread.of(result.totals), Spread.of(result.broken)
+    if not result.cells:
+        return "These robots did nothing that the paper has beside it; what they did stands below."
+    total = Spread.of(result.totals)
     outside = [
         f"{tool} at goal {goal}"
-        for tool, counts in EXTENSION_OF_REACH.items()
-        for goal, paper in enumerate(counts, 1)
-        if not Spread.of(result.cells[tool, goal]).holds(paper)
+        for (tool, goal), counts in result.cells.items()
+        if not Spread.of(counts).holds(EXTENSION_OF_REACH[tool, goal])
     ]
-    low, high = total.mean_ci
+    ci = total.mean_ci
+    mean = "" if ci is None else f" (95 % interval of the mean {ci[0]:.1f} to {ci[1]:.1f})"
+    broken = (
+        f"; with the broken tool {Spread.of(result.broken).mean:.1f} of {BROKEN_TRIALS}, the "
+        f"paper's {BROKEN}"
+        if result.broken
+        else ""
+    )
     numbers = (
-        f"{result.robots} robots solve {total.mean:.1f} of the 80 trials on average "
-        f"(95 % interval of the mean {low:.1f} to {high:.1f}), the paper's robot {TOTAL}; with the "
-        f"broken tool {broken.mean:.1f} of 16, the paper's {BROKEN_TOOL}."
+        f"{many(result.robots, 'robot')} solve{'s' if result.robots == 1 else ''} "
+        f"{total.mean:.1f} of the {TRIALS} trials on average{mean}, the paper's robot "
+        f"{TOTAL}{broken}."
     )
     if result.robots < ENOUGH_ROBOTS:
         few = f"{result.robots} robot{'s are' if result.robots != 1 else ' is'} too few to say."
@@ -60,26 +78,27 @@ def solved_by_one(trials: Sequence[Replay]) -> str:
 
 def pulls(learned: LearnedRows) -> str:
     """Return where a tool affords pulling: which of its parts, and by which behaviors."""
-    rows = learned.rows.values()
+    tool = learned.run.spec.held
+    name = one_line(tool.name, 60)
     pulling = [
         row
-        for row in rows
+        for row in learned.rows.values()
         if sector(row.expected_movement.dx, row.expected_movement.dy) == "toward"
     ]
     if not pulling:
-        return f"The {learned.tool.name} has no row that moves the puck toward the robot."
-    parts = Counter(learned.tool.part_nearest(row.start.wrist_to_object).name for row in pulling)
+        return f"The {name} has no row that moves the puck toward the robot."
+    parts = Counter(region_of(tool, row) for row in pulling)
     calls = Counter(row.exploratory.name for row in pulling)
+    near = "" if UNKNOWN in parts else f" The puck was nearest to the {_counted(parts)}; by"
     return (
-        f"{len(pulling)} of the {len(learned.rows)} rows of the {learned.tool.name} move the puck "
-        f"toward the robot{_of_these_excluded(pulling)}. The puck was nearest to the "
-        f"{_counted(parts)}; by {_counted(calls)}."
+        f"{len(pulling)} of the {len(learned.rows)} rows of the {name} move the puck toward the "
+        f"robot{_of_these_excluded(pulling)}.{near or ' By'} {_counted(calls)}."
     )
 
 
 def _of_these_excluded(rows: Sequence[Affordance]) -> str:
     """Return how many of some rows are not used any more, nothing when all are."""
-    gone = sum(2 * row.times_successful <= row.times_used for row in rows)
+    gone = sum(not is_probable(row.times_successful, row.times_used) for row in rows)
     return f"; {gone} of these {'are' if gone != 1 else 'is'} excluded by now" if gone else ""
 
 
@@ -89,61 +108,37 @@ def _counted(counts: Mapping[Any, int]) -> str:
     return ", ".join(f"{name} ({count})" for name, count in ordered)
 
 
-@dataclass(frozen=True, slots=True)
-class Unlearned:
-    """What trials with a broken tool made of the rows.
-
-    Args:
-        excluded: in how many trials a row was excluded, by the row's number.
-        lost: numbers of rows tried that the broken shape truly cannot do.
-        missing: numbers of excluded rows whose attractor lay on the missing side.
-        tally: figures of the trials.
-    """
-
-    excluded: dict[int, int]
-    lost: frozenset[int]
-    missing: frozenset[int]
-    tally: Tally
-
-
-def unlearned(broken: Broken) -> Unlearned:
-    """Return what the trials with a broken tool made of its rows."""
-    excluded: Counter[int] = Counter()
-    lost: set[int] = set()
-    for trial in broken.trials:
-        for one in trial.steps:
-            number = one.considered[0].id
-            excluded[number] += one.step.record.died
-            if one.step.lost:
-                lost.add(number)
-    gone = {number: count for number, count in excluded.items() if count}
-    missing = frozenset(
-        n for n in gone if broken.rows[n].start.wrist_to_object_x * broken.missing_side > 0.0
-    )
-    records = [
+def ended_trials(broken: Broken) -> list[TrialRecord]:
+    """Return the trials with a broken tool as records."""
+    return [
         TrialRecord(t.spec, tuple(one.step for one in t.steps), t.end)
         for t in broken.trials
         if t.end is not None
     ]
-    return Unlearned(gone, frozenset(lost), missing, Tally.of(records))
 
 
-def forgot(broken: Broken, result: Unlearned) -> str:
+def excluded_rows(broken: Broken) -> dict[int, DeadRow]:
+    """Return the rows that were excluded in trials with a broken tool, by number in the store."""
+    numbers = {row.step: number for number, row in broken.learned.rows.items()}
+    left = broken.trials[0].spec.held
+    side = missing_side(broken.learned.run.spec.held, left)
+    return {numbers[dead.row.step]: dead for dead in dead_rows(ended_trials(broken), side)}
+
+
+def forgot(broken: Broken) -> str:
     """Return what the robot unlearned when its tool broke."""
-    tally = result.tally
-    sure = len(set(result.excluded) & result.lost)
-    side = (
-        f"with {len(result.missing)} of these the puck lay on the side that is gone, and "
-        if broken.missing_side
-        else "of these, "
-    )
+    tally, dead = Tally.of(ended_trials(broken)), excluded_rows(broken).values()
+    spec, learned = broken.trials[0].spec, broken.learned
+    missing, lost = sum(row.on_missing_side for row in dead), sum(row.lost for row in dead)
+    has_side = missing_side(learned.run.spec.held, spec.held) != 0.0
+    side = f"with {missing} of these the puck lay on the side that is gone, and "
+    paper = papers_breaking(spec, learned.run.spec)
     return (
-        f"{len(result.excluded)} of its {len(broken.rows)} rows were excluded in at least one of "
-        f"{tally.trials} trials; {side}{sure} are truly lost: the {broken.shape.name} cannot do "
-        "them. "
-        f"{tally.tries_on_lost} of {tally.tries} tries went to lost rows. Each trial began with "
-        f"the table as learned; {tally.solved} of {tally.trials} were solved (paper: {BROKEN_TOOL} "
-        "of 16)."
+        f"{len(dead)} of its {len(learned.rows)} rows were excluded in at least one of "
+        f"{tally.trials} trials; {side if has_side else 'of these, '}{lost} are truly lost: the "
+        f"{one_line(spec.shape, 60)} cannot do them. {tally.tries_on_lost} of {tally.tries} tries "
+        f"went to lost rows. Each trial began with the table as learned; {tally.solved} of "
+        f"{tally.trials} were solved{f' (paper: {BROKEN} of 16)' if paper else ''}."
     )
 
 

@@ -3,10 +3,10 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from affcli.analysis.reproduction import Reproduction
 from affcli.core.affordance import Affordance
+from affcli.core.records import LearningRunInfo
 from affcli.core.replay import Replay
-from affcli.core.tool import Tool
-from affcli.report.reproduction import Reproduction
 
 
 @dataclass(frozen=True, slots=True)
@@ -14,23 +14,11 @@ class LearnedRows:
     """What one learning run left.
 
     Args:
-        run: its number in the store.
-        tool: the tool held, by its true shape: for the drawings.
-        seed, robot: whose run it is.
-        behaviors, resets: how many were executed; how often the attractor was put back by hand.
-        robot_seconds: how long it took.
-        settings: how its settings differ from the defaults, in words.
+        run: which; its tool is drawn by its true shape.
         rows: the affordance table by the rows' numbers in the store.
     """
 
-    run: int
-    tool: Tool
-    seed: int
-    robot: int
-    behaviors: int
-    resets: int
-    robot_seconds: float
-    settings: str
+    run: LearningRunInfo
     rows: Mapping[int, Affordance]
 
 
@@ -39,16 +27,11 @@ class Broken:
     """A tool that broke.
 
     Args:
-        tool, shape: what was learned, and what is left of it.
-        missing_side: x of the middle of what is missing, in the tool frame (in).
-        rows: the affordance table as learned, by the rows' numbers in the store.
-        trials: with the broken tool, all of which ended.
+        learned: what was learned before.
+        trials: with what is left of the tool, all of which ended.
     """
 
-    tool: Tool
-    shape: Tool
-    missing_side: float
-    rows: Mapping[int, Affordance]
+    learned: LearnedRows
     trials: Sequence[Replay]
 
 
@@ -62,6 +45,7 @@ class Content:
         reproduction: what many robots gave; None when there is none.
         tools: what the robot learned.
         replays: its trials, done again.
+        not_replayed: its trials that this affcli cannot do again, each with the reason.
         left_out: trials of the same robot that are not shown.
         broken: each tool of its that broke.
         versions: what the records were made with, by package.
@@ -72,6 +56,7 @@ class Content:
     reproduction: Reproduction | None
     tools: Sequence[LearnedRows]
     replays: Sequence[Replay]
+    not_replayed: Mapping[int, str]
     left_out: int
     broken: Sequence[Broken]
     versions: Mapping[str, str]

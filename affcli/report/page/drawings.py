@@ -1,11 +1,15 @@
 """Arrows over tools as the page draws them: one panel a behavior, as in Fig. 6."""
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from affcli.core.affordance import Affordance
+from affcli.analysis.regions import parts_at, region_of
+from affcli.core.affordance import Affordance, is_probable
+from affcli.core.behavior import BehaviorCall
 from affcli.core.geometry import direction_degrees
 from affcli.core.tool import Tool, ToolPart
+from affcli.report.words import call_title, call_words
 
 SECTORS = ("right", "away", "left", "toward")
 """Where a movement goes, by quarters of a turn: away from the robot is a push, toward it a pull."""
@@ -40,9 +44,16 @@ class Arrow:
 
 @dataclass(frozen=True, slots=True)
 class Panel:
-    """The rows of one behavior with one value of its parameter."""
+    """The rows of one behavior with one value of its parameters, the tool held and turned alike.
+
+    Args:
+        title: behavior, parameters, and what of the hold is not usual.
+        parts: of the tool, as it lay around the wrist (in).
+        arrows: the rows.
+    """
 
     title: str
+    parts: Sequence[ToolPart]
     arrows: Sequence[Arrow]
 
 
@@ -62,46 +73,64 @@ def sector(dx: float, dy: float) -> str:
 
 
 def panels(
-    tool: Tool, rows: Mapping[int, Affordance], excluded: Mapping[int, int] | None = None
+    tool: Tool,
+    binding: BehaviorCall,
+    rows: Mapping[int, Affordance],
+    excluded: Mapping[int, int] | None = None,
 ) -> list[Panel]:
-    """Return the panels of a tool, behaviors in alphabetical order, the shorter distance first.
+    """Return the panels of a tool, behaviors in alphabetical order, smaller parameters first.
 
     Args:
-        tool: as it was when the rows were made.
+        tool: as it was when the rows were made, in the tool frame.
+        binding: how it was held; a panel of rows with another one says so.
         rows: by number.
         excluded: in how many trials a row was excluded, by number. None: those whose probability is
             1/2 or below now count as excluded.
     """
-    by_call: dict[tuple[str, float], list[Arrow]] = {}
+    grouped: dict[tuple[BehaviorCall, BehaviorCall, int], list[tuple[int, Affordance]]] = {}
     for number, row in rows.items():
-        moved, start = row.expected_movement, row.start.wrist_to_object
-        gone = 2 * row.times_successful <= row.times_used
-        arrow = Arrow(
-            number,
-            *(start.x, start.y, moved.dx, moved.dy),
-            sector=sector(moved.dx, moved.dy),
-            counters=f"{row.times_successful}/{row.times_used}",
-            excluded=int(gone) if excluded is None else excluded.get(number, 0),
-            part=tool.part_nearest(start).name,
-        )
-        distance = row.exploratory.params[0][1]
-        by_call.setdefault((row.exploratory.name, distance), []).append(arrow)
-    return [
-        Panel(f"{name}, {distance:g} in", by_call[name, distance])
-        for name, distance in sorted(by_call)
-    ]
+        turn = round(math.degrees(row.wrist_angle))
+        grouped.setdefault((row.exploratory, row.binding, turn), []).append((number, row))
+    made = []
+    for (call, held, turn), own in sorted(grouped.items(), key=lambda item: _place(*item[0])):
+        title = [call_title(call)]
+        title += [] if held == binding else [call_words(held)]
+        title += [f"wrist at {turn} deg"] if turn else []
+        arrows = [_arrow(tool, number, row, excluded) for number, row in own]
+        made.append(Panel("; ".join(title), parts_at(tool, held, math.radians(turn)), arrows))
+    return made
 
 
-def frame(tools: Sequence[Tool], drawn: Sequence[Panel]) -> Frame:
+def _place(call: BehaviorCall, binding: BehaviorCall, turn: int) -> tuple[object, ...]:
+    """Return by what panels are put in order."""
+    return (call.name, [value for _, value in call.params], str(binding), turn)
+
+
+def _arrow(tool: Tool, number: int, row: Affordance, excluded: Mapping[int, int] | None) -> Arrow:
+    """Return a row as it is drawn."""
+    moved, start = row.expected_movement, row.start.wrist_to_object
+    gone = not is_probable(row.times_successful, row.times_used)
+    return Arrow(
+        number,
+        *(start.x, start.y, moved.dx, moved.dy),
+        sector=sector(moved.dx, moved.dy),
+        counters=f"{row.times_successful}/{row.times_used}",
+        excluded=int(gone) if excluded is None else excluded.get(number, 0),
+        part=region_of(tool, row),
+    )
+
+
+def frame(drawn: Iterable[Panel]) -> Frame:
     """Return what the panels must show so that every arrow and the tools fit."""
-    corners = [corner for tool in tools for part in tool.parts for corner in part.outline.vertices]
-    arrows = [arrow for panel in drawn for arrow in panel.arrows]
-    xs = [x for x, _ in corners] + [x for a in arrows for x in (a.x, a.x + a.dx)]
-    ys = [y for _, y in corners] + [y for a in arrows for y in (a.y, a.y + a.dy)]
+    panels = list(drawn)
+    corners = [c for panel in panels for part in panel.parts for c in part.outline.vertices]
+    arrows = [arrow for panel in panels for arrow in panel.arrows]
+    xs = [0.0, *(x for x, _ in corners), *(x for a in arrows for x in (a.x, a.x + a.dx))]
+    ys = [0.0, *(y for _, y in corners), *(y for a in arrows for y in (a.y, a.y + a.dy))]
     left, bottom = min(xs) - MARGIN, min(ys) - MARGIN
     return Frame(left, bottom, max(xs) + MARGIN - left, max(ys) + MARGIN - bottom)
 
 
 def points(part: ToolPart) -> str:
-    """Return a part's outline as SVG wants it, y upward (in, tool frame)."""
+    """Return a part's outline as SVG wants it, y upward (in)."""
     return " ".join(f"{x:g},{y:g}" for x, y in part.outline.vertices)

@@ -4,10 +4,14 @@ from collections.abc import Iterable
 from typing import Any
 
 from affcli.core.observation import Movement
+from affcli.core.records import LearningRunInfo
 from affcli.core.replay import Considered, Replay, ReplayedStep
-from affcli.core.tool import Tool, paper_tools
+from affcli.core.specs import TrialSpec
+from affcli.core.tool import Tool, ToolPart, hold_of
 from affcli.core.workspace import Workspace
-from affcli.report.trials import distances, movement_in_words
+from affcli.errors import one_line
+from affcli.report.trials import step_json
+from affcli.report.words import call_words, movement_words, reason_words
 
 UNIT = 0.02
 """Inches, or radians, from one whole number to the next: less than a pixel on the page."""
@@ -15,8 +19,6 @@ AROUND = 2.0
 """Inches shown around the table: a puck that leaves it is still seen."""
 ROUNDED = 2
 """Decimals of lengths that are drawn (in)."""
-UNSEEN = 0.05
-"""Inches below which a movement would be shown as 0.0: the noise of a puck that stays."""
 
 
 def packed(values: Iterable[float]) -> str:
@@ -42,31 +44,35 @@ def _zeros(count: int) -> list[str]:
     return [f"~{count}"] if count > 1 else ["0"] * count
 
 
-def trial_data(replay: Replay, world: int) -> dict[str, Any]:
+def trial_data(replay: Replay, run: LearningRunInfo, world: int) -> dict[str, Any]:
     """Return a trial as JSON types: which it is, its film, and why each step was taken.
 
     Args:
         replay: the trial.
+        run: the learning run whose table it used.
         world: in which of the page's worlds it took place.
     """
     scenes = [scene for one in replay.steps for scene in one.scenes] or [replay.opening]
     spec, goal, end = replay.spec, replay.opening.goal, replay.end
+    tools = list(dict.fromkeys(scene.tool for scene in scenes))
+    left = None if end is None else end.last_reasons
     return {
         "id": replay.trial_id,
         "world": world,
-        "tool": spec.tool,
-        "shape": spec.shape,
-        "goal": spec.goal,
-        "start": spec.start,
-        "region": None if goal is None else [*goal.center, goal.half_width],
+        **{name: one_line(text, 60) for name, text in _which(spec).items()},
+        "region": None if goal is None else _outline(goal.outline().vertices),
         "outcome": "interrupted" if end is None else end.outcome.value,
-        "left": None if end is None or end.last_survivors is None else list(end.last_survivors),
+        "left": None if left is None else [reason_words(reason) for reason in left],
         "equal": not replay.differences,
         "steps": [_step(one) for one in replay.steps],
+        "color": hex_color(run.spec.held.color),
+        "held": [_held(tool, replay, run) for tool in tools],
         "film": {
             "wx": packed(s.wrist.x for s in scenes),
             "wy": packed(s.wrist.y for s in scenes),
+            "wa": packed(s.wrist.angle for s in scenes),
             "lift": packed(s.lift for s in scenes),
+            "held": packed(UNIT * tools.index(s.tool) for s in scenes),
             "x": packed(s.attractor.x for s in scenes),
             "y": packed(s.attractor.y for s in scenes),
             "a": packed(s.attractor.angle for s in scenes),
@@ -74,24 +80,33 @@ def trial_data(replay: Replay, world: int) -> dict[str, Any]:
     }
 
 
+def _which(spec: TrialSpec) -> dict[str, str]:
+    """Return the names that tell a trial from others."""
+    return {
+        "tool": spec.tool,
+        "shape": spec.shape,
+        "planner": str(spec.planner),
+        "goal": spec.goal,
+        "start": spec.start,
+    }
+
+
 def _step(one: ReplayedStep) -> dict[str, Any]:
     """Return one step as JSON types."""
     record = one.step.record
-    now, _, _ = distances(record, one.goal)
+    row = record.row
     return {
+        **step_json(one.considered[0].id, record, one.goal),
         "frames": len(one.scenes),
         "placed": one.placed,
-        "left": list(record.survivors),
         "close": [_considered(each) for each in one.considered],
         "at": _rounded(record.start.object_x, record.start.object_y),
-        "toGoal": f"{now:.1f}",
         "expected": _moved(record.expected),
         "seen": _moved(record.seen),
-        "replicated": record.replicated,
         "blocked": record.execution is None,
-        "died": record.died,
+        "hold": call_words(row.binding) if record.regrasped else None,
         "lost": one.step.lost,
-        "before": [record.row.times_successful, record.row.times_used],
+        "before": [row.times_successful, row.times_used],
         "after": [record.times_successful_after, record.times_used_after],
     }
 
@@ -101,7 +116,7 @@ def _considered(each: Considered) -> list[Any]:
     row = each.row
     return [
         each.id,
-        str(row.exploratory),
+        call_words(row.exploratory),
         f"{each.expected_distance:.1f}",
         f"{each.repositioning:.1f}",
         f"{row.times_successful}/{row.times_used}",
@@ -110,12 +125,11 @@ def _considered(each: Considered) -> list[Any]:
 
 def _moved(movement: Movement) -> list[Any]:
     """Return a movement along x and y (in) and in words, as the terminal has them."""
-    words = movement_in_words(movement) if movement.distance >= UNSEEN else "none"
-    return [*_rounded(movement.dx, movement.dy), words]
+    return [*_rounded(movement.dx, movement.dy), movement_words(movement)]
 
 
 def world_data(workspace: Workspace) -> dict[str, Any]:
-    """Return the table, the puck and the tools as JSON types (in)."""
+    """Return the table and the puck as JSON types (in)."""
     table = workspace.table
     half, near = table.half_width + AROUND, min(table.near, 4.0) - 1.0
     return {
@@ -127,16 +141,33 @@ def world_data(workspace: Workspace) -> dict[str, Any]:
             "far": table.far,
         },
         "view": [-half, near, 2.0 * half, table.far + AROUND - near],
-        "tools": {name: _tool(tool) for name, tool in paper_tools(workspace.tools).items()},
     }
 
 
-def _tool(tool: Tool) -> dict[str, Any]:
-    """Return a tool's parts (in, tool frame) and colour as JSON types."""
+def _held(tool: Tool, replay: Replay, run: LearningRunInfo) -> dict[str, Any]:
+    """Return outlines around the wrist (in): of a tool in a scene, and of what it lacks.
+
+    Args:
+        tool: as it was held in a scene.
+        replay: the trial.
+        run: what was learned, with the tool that the robot believes to hold.
+    """
+    rows = (one.step.record.row for one in replay.steps)
+    bindings = dict.fromkeys([run.spec.binding, *(row.binding for row in rows)])
+    missing: tuple[ToolPart, ...] = ()
+    for binding in bindings:
+        hold = hold_of(binding)
+        if replay.spec.held.held(hold).outlines == tool.outlines:
+            missing = run.spec.held.held(hold).parts_missing_in(tool)
     return {
-        "color": hex_color(tool.color),
-        "parts": {part.name: [list(v) for v in part.outline.vertices] for part in tool.parts},
+        "parts": [_outline(part.outline.vertices) for part in tool.parts],
+        "missing": [_outline(part.outline.vertices) for part in missing],
     }
+
+
+def _outline(vertices: Iterable[tuple[float, float]]) -> str:
+    """Return corners as SVG wants them."""
+    return " ".join(f"{x:g},{y:g}" for x, y in vertices)
 
 
 def hex_color(color: tuple[float, float, float]) -> str:

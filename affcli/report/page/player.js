@@ -3,10 +3,12 @@
   const data = JSON.parse(document.getElementById("data").textContent);
   const byId = (id) => document.getElementById(id);
   const RATE = 15; // frames a robot second
-  const SEARCHES = ["observe", "over", "reach", "s1", "s2", "s3", "s4"];
+  // The boxes of Fig. 7 before a row is used: the paper's searches, or one for another planner.
+  const NESTED = ["observe", "over", "reach", "s1", "s2", "s3", "s4"], OTHER = ["observe", "over", "reach", "choose"];
+  const NAMES = { consistent: "1: seen with these colours", probable: "2: probable enough", reachable: "in the arm's reach", nearest: "3: best by expected distance" };
   const LIT = 140; // milliseconds that each box is lit for while a row is chosen, at 4x
   const COMPARED = 500; // and the last one, at the end of a step
-  const END = { solved: "over", "attractor out of reach": "reach", "no row left": "s4" }; // the box where a trial ends
+  const end = () => ({ solved: "over", "attractor out of reach": "reach", "no row left": searches().at(-1) })[trial.outcome]; // the box where a trial ends
   const SVG = "http://www.w3.org/2000/svg";
 
   /** Undo report/page/films.packed. */
@@ -33,6 +35,8 @@
     if (kind) node.className = kind;
     return node;
   };
+  const nested = () => trial.planner.split(/[:@]/)[0] === "nested-query";
+  const searches = () => nested() ? NESTED : OTHER;
   const steps = (count) => `${count} step${count === 1 ? "" : "s"}`;
 
   const svg = byId("table"), rows = [...byId("list").tBodies[0].rows]; // as the trials are in the data
@@ -53,10 +57,17 @@
     }
     draw();
     list();
+    for (const box of byId("flow").children)
+      box.hidden = nested() ? box.dataset.box === "choose" : /^s\d$/.test(box.dataset.box);
+    for (const { name, value } of trial.steps[0]?.reasons ?? []) {
+      const shown = byId("flow").querySelector(`[data-value="${CSS.escape(name)}"]`);
+      if (shown && value !== null) shown.textContent = name === "nearest" ? `${+(100 * value).toFixed(1)} %` : value === 0.5 ? "1/2" : value;
+    }
+    const planner = trial.planner === "nested-query" ? "" : `, planner ${trial.planner}`;
     const broken = trial.shape === trial.tool ? "" : `, truly the ${trial.shape} (nobody told the robot)`;
     const same = trial.equal ? "" : " This replay DIFFERS from its record.";
     byId("which").textContent =
-      `Trial ${trial.id}: ${trial.tool}${broken}, goal ${trial.goal}, start ${trial.start}: ` +
+      `Trial ${trial.id}: ${trial.tool}${broken}, goal ${trial.goal}, start ${trial.start}${planner}: ` +
       `${trial.outcome} after ${steps(trial.steps.length)}.${same}`;
     byId("scrub").max = Math.max(0, film.x.length - 1);
     byId("player").hidden = false;
@@ -65,7 +76,7 @@
   }
 
   const outlines = (parts, parent, look) =>
-    parts.map((points) => make("polygon", { points: points.map((p) => p.join(",")).join(" "), ...look }, parent));
+    parts.map((points) => make("polygon", { points, ...look }, parent));
 
   function draw() {
     svg.replaceChildren();
@@ -75,28 +86,33 @@
     const t = world.table;
     make("rect", { class: "top", x: t.left, y: t.near, width: t.right - t.left, height: t.far - t.near }, flip);
     if (trial.region) {
-      const [x, y, half] = trial.region;
-      make("rect", { class: "goal", x: x - half, y: y - half, width: 2 * half, height: 2 * half }, flip);
-      make("text", { class: "label", x: x - half + 0.3, y: -(y + half) + 1.2 }, svg).textContent = `G${trial.goal}`;
+      make("polygon", { class: "goal", points: trial.region }, flip);
+      const corners = trial.region.split(" ").map((corner) => corner.split(",").map(Number));
+      const x = Math.min(...corners.map((c) => c[0])), y = Math.max(...corners.map((c) => c[1]));
+      make("text", { class: "label", x: x + 0.3, y: -y + 1.2 }, svg).textContent = `G${trial.goal}`;
     }
     make("text", { class: "label", x: 0, y: -bottom - 0.5, "text-anchor": "middle" }, svg).textContent = "the robot stands here";
     const path = make("polyline", { class: "path" }, flip);
-    const missing = make("g", {}, flip);
-    const believed = world.tools[trial.tool], held = world.tools[trial.shape];
-    const gone = Object.entries(believed.parts).filter(([name]) => !(name in held.parts));
-    outlines(gone.map(([, points]) => points), missing, { class: "missing" });
+    const missing = trial.held.map((one) => {
+      const group = make("g", {}, flip);
+      outlines(one.missing, group, { class: "missing" });
+      return group;
+    });
     const puck = make("g", {}, flip);
     make("circle", { class: "puck", r: world.puck }, puck);
     make("line", { class: "mark", x2: world.puck }, puck);
-    const tool = make("g", {}, flip);
-    // The tool has the colour of the one the robot believes to hold.
-    const parts = outlines(Object.values(held.parts), tool, { class: "held", fill: believed.color });
-    make("path", { class: "grasp", d: "M-.6 0H.6M0-.6V.6" }, tool);
+    // The tool has the colour of the one the robot believes to hold; a new grasp is a new outline.
+    const tools = trial.held.map((one) => {
+      const group = make("g", {}, flip);
+      outlines(one.parts, group, { class: "held", fill: trial.color });
+      make("path", { class: "grasp", d: "M-.6 0H.6M0-.6V.6" }, group);
+      return group;
+    });
     const expected = make("path", { class: "expected", "marker-end": "url(#head-away)" }, flip);
     const seen = make("path", { class: "seen", "marker-end": "url(#head-seen)" }, flip);
     const marker = make("marker", { id: "head-seen", viewBox: "0 0 6 6", refX: 5, refY: 3, markerWidth: 4, markerHeight: 4, orient: "auto" }, make("defs", {}, svg));
     make("path", { d: "M0 .6L6 3L0 5.4z", fill: "currentColor" }, marker);
-    drawn = { path, missing, puck, tool, parts, expected, seen };
+    drawn = { path, missing, puck, tools, expected, seen };
   }
 
   const stepAt = (f) => {
@@ -111,7 +127,7 @@
       const button = html("button");
       button.type = "button";
       const verdict = step.replicated ? html("span", "as expected", "yes") : html("span", step.blocked ? "blocked" : "not as expected", "no");
-      button.append(`${i + 1}. ${step.close[0][1]}: `, verdict, step.died ? ", row excluded" : "");
+      button.append(`${i + 1}. ${step.close[0][1]}: `, verdict, step.excluded ? ", row excluded" : "");
       button.addEventListener("click", () => {
         stop();
         show(starts[i]);
@@ -136,15 +152,19 @@
     frame = Math.min(last, Math.max(0, f));
     const x = film.x[frame], y = film.y[frame], wx = film.wx[frame], wy = film.wy[frame];
     drawn.puck.setAttribute("transform", `translate(${x} ${y}) rotate(${(film.a[frame] * 180) / Math.PI})`);
-    drawn.tool.setAttribute("transform", `translate(${wx} ${wy})`);
-    drawn.missing.setAttribute("transform", `translate(${wx} ${wy})`);
-    for (const part of drawn.parts) part.classList.toggle("lifted", film.lift[frame] > 0.01);
+    const at = `translate(${wx} ${wy}) rotate(${(film.wa[frame] * 180) / Math.PI})`, held = Math.round(film.held[frame] / data.unit);
+    for (const groups of [drawn.tools, drawn.missing])
+      groups.forEach((group, i) => {
+        group.setAttribute("transform", at);
+        group.setAttribute("visibility", i === held ? "visible" : "hidden");
+      });
+    for (const part of svg.querySelectorAll(".held")) part.classList.toggle("lifted", film.lift[frame] > 0.01);
     drawn.path.setAttribute("points", way.slice(0, frame + 1).join(" "));
     byId("scrub").value = frame;
     if (!trial.steps.length) {
       byId("why").replaceChildren(html("h3", "No step was taken"), ending());
       delete byId("why").dataset.step;
-      lit(END[trial.outcome] ? [END[trial.outcome]] : []);
+      lit(end() ? [end()] : []);
       now("the beginning");
       return;
     }
@@ -155,10 +175,10 @@
     arrow(drawn.seen, step.seen, ended);
     let phase = inStep < step.placed ? "position wrist" : step.close[0][1];
     let boxes = [inStep < step.placed ? "place" : "explore"];
-    if (first) { boxes = SEARCHES; phase = "choose a row"; }
+    if (first) { boxes = searches(); phase = "choose a row"; }
     if (ended) { boxes = ["compare"]; phase = "compare"; }
     if (ended && i === trial.steps.length - 1) {
-      const box = END[trial.outcome];
+      const box = end();
       boxes = box ? ["compare", box] : ["compare"];
       phase = `the end: ${trial.outcome}`;
     }
@@ -181,7 +201,7 @@
   }
 
   function ending() {
-    const rows = trial.left ? `; the searches left ${trial.left.join(", ")} rows` : "";
+    const rows = trial.left ? `; rows left: ${trial.left.join(", ")}` : "";
     return html("p", `The trial ended: ${trial.outcome}${rows}.`);
   }
 
@@ -191,19 +211,21 @@
     const box = byId("why");
     box.dataset.step = `${trial.id}/${i}`;
     const funnel = html("table", "", "funnel");
-    funnel.append(html("caption", "Rows that each search left"));
-    const names = ["1: seen with these colours", "2: probability over 1/2", "in the arm's reach", "3: best 20 % by expected distance", "4: least re-positioning"];
-    [...step.left, 1].forEach((count, k) => {
+    funnel.append(html("caption", nested() ? "Rows that each search left" : "What the planner went by"));
+    const most = Math.max(1, ...step.reasons.map((reason) => reason.rows ?? 0));
+    const reasons = step.reasons.map(({ name, rows, value }) => [(nested() && NAMES[name]) || name, rows, value]);
+    for (const [name, count, value] of [...reasons, [nested() ? "4: least re-positioning" : "chosen", 1, null]]) {
       const row = funnel.insertRow();
-      const head = html("th", names[k]);
+      const head = html("th", name);
       head.scope = "row";
+      row.append(head, html("td", String(count ?? (value === null ? "" : +value.toPrecision(3)))));
+      if (count === null) continue;
       const bar = html("i");
-      bar.style.width = `${(100 * count) / Math.max(1, step.left[0])}%`;
-      row.append(head, html("td", String(count)));
+      bar.style.width = `${(100 * count) / most}%`;
       row.insertCell().append(bar);
-    });
+    }
     const others = html("table");
-    others.append(html("caption", "Chosen, and what came close in search 4"));
+    others.append(html("caption", "Chosen, and what came close"));
     const top = others.createTHead().insertRow();
     for (const name of ["row", "behavior", "wrist travels", "ends from goal", "probability"]) {
       const head = html("th", name);
@@ -221,11 +243,16 @@
       line.append(head);
       for (const text of [call, `${repositioning} in`, `${end} in`, probability]) line.append(html("td", text));
     });
-    const lead = html("p", `Row ${id}, ${behavior}: of the ${step.left[3]} row${step.left[3] === 1 ? "" : "s"} that should leave the puck nearest the goal it needs the least re-positioning, ${travel} in. The puck is ${step.toGoal} in from the goal's centre and should end ${ends} in from it.`, "answer");
+    const nearest = step.reasons.find((reason) => reason.name === "nearest")?.rows;
+    const reason = nested() && nearest
+      ? `of the ${nearest} row${nearest === 1 ? "" : "s"} that should leave the puck nearest the goal it needs the least re-positioning, ${travel} in.`
+      : `chosen by ${trial.planner}; the wrist travels ${travel} in.`;
+    const hold = step.hold ? ` The tool was grasped anew first: ${step.hold}.` : "";
+    const lead = html("p", `Row ${id}, ${behavior}: ${reason} The puck is ${step.distance_to_goal.toFixed(1)} in from the goal's centre and should end ${ends} in from it.${hold}`, "answer");
     const outcome = html("p");
     const word = step.blocked ? "blocked: the tool would have come down on the puck, counted as a failure" : step.replicated ? "as expected (within 40 degrees)" : "not as expected";
     outcome.append(`Expected ${step.expected[2]}, seen ${step.seen[2]}: `, html("span", word, step.replicated ? "yes" : "no"),
-      `. Successes/uses ${step.before.join("/")} before, ${step.after.join("/")} after${step.died ? ": excluded from now on" : ""}.` +
+      `. Successes/uses ${step.before.join("/")} before, ${step.after.join("/")} after${step.excluded ? ": excluded from now on" : ""}.` +
       (step.lost ? ` In truth the ${trial.shape} cannot do it.` : ""));
     const scroll = html("div", "", "scroll");
     scroll.tabIndex = 0;
@@ -254,7 +281,7 @@
       const speed = Number(byId("speed").value), slower = Math.min(2, 4 / speed);
       if (searching) {
         const box = Math.max(0, Math.floor((time - searching) / (LIT * slower)));
-        if (box < SEARCHES.length) { lit([SEARCHES[box]]); last = time; return; }
+        if (box < searches().length) { lit([searches()[box]]); last = time; return; }
         searching = 0;
       }
       if (time < until) { last = time; return; }

@@ -2,21 +2,23 @@
 
 from collections import Counter, defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from affcli import __version__
+from affcli.analysis.breaking import missing_side
+from affcli.analysis.paper import BROKEN_TRIALS, GOALS, TRIALS, papers_successes
+from affcli.analysis.statistics import ENOUGH_ROBOTS
 from affcli.core.replay import Replay
-from affcli.core.task import GOAL_NUMBERS
-from affcli.core.trial import Outcome, Protocol
-from affcli.report.learning import clock
+from affcli.core.specs import Protocol
+from affcli.core.trial import Outcome
+from affcli.errors import one_line
 from affcli.report.page import answers, drawings, films
 from affcli.report.page.content import Broken, Content, LearnedRows
-from affcli.report.paper import EXTENSION_OF_REACH
-from affcli.report.reproduction import ENOUGH_ROBOTS, reproduction_json
+from affcli.report.reproduction import reproduction_json
+from affcli.report.words import call_words, clock, in_order, run_words, unknown_shapes
 
 HOME = "affcli.report.page"
 """Where template, style sheet and scripts lie."""
@@ -31,18 +33,6 @@ FEW = 3
 """Tries in vain that show what adaptation is."""
 
 
-@dataclass(frozen=True, slots=True)
-class _ToolSection:
-    """What the page shows of one tool."""
-
-    learned: LearnedRows
-    panels: Sequence[drawings.Panel]
-    frame: drawings.Frame
-    answer: str
-    clock: str
-    excluded: bool
-
-
 def render(content: Content, command: str) -> str:
     """Return the page.
 
@@ -50,20 +40,22 @@ def render(content: Content, command: str) -> str:
         content: what it shows.
         command: makes it again; shown at its end.
     """
-    loader = PackageLoader(HOME, "")
     pages = Environment(
-        loader=loader,
+        loader=PackageLoader(HOME, ""),
         autoescape=True,
         undefined=StrictUndefined,
-        trim_blocks=False,
+        finalize=_printable,
         keep_trailing_newline=True,
     )
     pages.filters["capitalize_first"] = lambda text: text[:1].upper() + text[1:]
     sources = {name: _source(pages, name) for name in ("style.css", "tables.js", "player.js")}
     worlds = list(dict.fromkeys(replay.workspace for replay in content.replays))
-    trials = [films.trial_data(r, worlds.index(r.workspace)) for r in content.replays]
-    template = pages.get_template("page.html.j2")
-    return template.render(
+    runs = {learned.run.id: learned.run for learned in content.tools}
+    trials = [
+        films.trial_data(replay, runs[replay.run_id], worlds.index(replay.workspace))
+        for replay in content.replays
+    ]
+    return pages.get_template("page.html.j2").render(
         content=content,
         version=__version__,
         command=command,
@@ -71,8 +63,9 @@ def render(content: Content, command: str) -> str:
         tables=sources["tables.js"],
         player=sources["player.js"],
         points=drawings.points,
-        tools=[_tool_section(tool) for tool in content.tools],
+        tools=[_tool_section(learned) for learned in content.tools],
         trials=trials,
+        planners=len({trial["planner"] for trial in trials}) > 1,
         same=answers.same(content),
         data={
             "unit": films.UNIT,
@@ -82,8 +75,16 @@ def render(content: Content, command: str) -> str:
         },
         broken=[_broken_section(broken) for broken in content.broken],
         kinds=KINDS,
+        goals=GOALS,
+        sums={"total": TRIALS, "broken": BROKEN_TRIALS},
         **_results(content),
     )
+
+
+def _printable(value: object) -> object:
+    """Return a text without what is not printable; what is HTML already as it is."""
+    plain = isinstance(value, str) and not isinstance(value, Markup)
+    return one_line(value, 10_000) if plain else value
 
 
 def _source(pages: Environment, name: str) -> Markup:
@@ -95,86 +96,93 @@ def _source(pages: Environment, name: str) -> Markup:
 
 def _results(content: Content) -> dict[str, Any]:
     """Return what the section of results shows."""
-    single = _single(content.replays)
+    single_goals, single = _single(content.replays)
+    shared = {"single": single, "single_goals": single_goals}
     if content.reproduction is None:
         ends = Counter(r.end.outcome.value for r in content.replays if r.end is not None)
         tried = ends.total()
         del ends[Outcome.SOLVED.value]
         return {
+            **shared,
             "result": None,
             "results_answer": answers.solved_by_one(content.replays),
-            "single": single,
             "enough": False,
             "failures": ends.most_common(),
             "failed_of": tried,
         }
     result = reproduction_json(content.reproduction)
-    cells = {(cell["tool"], cell["goal"]): cell for cell in result["cells"]}
+    by_tool: dict[str, list[dict[str, Any]]] = defaultdict(list)
+    for cell in result["cells"]:
+        by_tool[cell["tool"]].append(cell)
     return {
+        **shared,
         "result": result,
         "results_answer": answers.reproduced(content.reproduction),
-        "by_tool": [
-            (tool, [cells[tool, goal] for goal in (1, 2, 3, 4)]) for tool in EXTENSION_OF_REACH
-        ],
-        "single": single,
+        "by_tool": by_tool.items(),
+        "settings": run_words(content.reproduction.session.spec),
         "enough": content.reproduction.robots >= ENOUGH_ROBOTS,
-        "failures": sorted(result["failures"].items(), key=lambda item: (-item[1], item[0])),
+        "failures": result["failures"].items(),
         "failed_of": result["trials"],
     }
 
 
-def _single(replays: Sequence[Replay]) -> list[tuple[str, list[tuple[int, int, int]]]]:
-    """Return for each tool and goal what one robot solved and tried, and the paper's successes."""
-    counts: dict[tuple[str, int], list[bool]] = defaultdict(list)
-    for replay in replays:
-        if replay.end is not None and replay.spec.protocol is Protocol.EXTENSION_OF_REACH:
-            solved = replay.end.outcome is Outcome.SOLVED
-            counts[replay.spec.tool, replay.spec.goal].append(solved)
-    return [
-        (
-            tool,
-            [
-                (sum(counts[tool, goal]), len(counts[tool, goal]), in_paper)
-                for goal, in_paper in enumerate(paper, 1)
-            ],
-        )
-        for tool, paper in EXTENSION_OF_REACH.items()
-        if any(counts[tool, goal] for goal in GOAL_NUMBERS)
+def _single(replays: Sequence[Replay]) -> tuple[list[str], list[tuple[str, list[dict[str, Any]]]]]:
+    """Return the goals, and for each tool what one robot solved and tried of each of them."""
+    ended = [
+        replay
+        for replay in replays
+        if replay.end is not None and replay.spec.protocol is Protocol.EXTENSION_OF_REACH
     ]
+    goals = in_order(replay.spec.goal for replay in ended)
+    rows: dict[str, dict[str, dict[str, Any]]] = {}
+    for replay in ended:
+        spec = replay.spec
+        empty = {goal: {"solved": 0, "tried": 0, "paper": None} for goal in goals}
+        cell = rows.setdefault(spec.tool, empty)[spec.goal]
+        cell["solved"] += replay.end is not None and replay.end.outcome is Outcome.SOLVED
+        cell["tried"] += 1
+        cell["paper"] = papers_successes(spec)
+    return goals, [(tool, list(cells.values())) for tool, cells in rows.items()]
 
 
-def _tool_section(learned: LearnedRows) -> _ToolSection:
+def _tool_section(learned: LearnedRows) -> dict[str, Any]:
     """Return what the page shows of one tool."""
-    drawn = drawings.panels(learned.tool, learned.rows)
-    return _ToolSection(
-        learned,
-        drawn,
-        drawings.frame([learned.tool], drawn),
-        answers.pulls(learned),
-        clock(learned.robot_seconds),
-        any(arrow.excluded for panel in drawn for arrow in panel.arrows),
-    )
+    spec = learned.run.spec
+    drawn = drawings.panels(spec.held, spec.binding, learned.rows)
+    return {
+        "run": learned.run,
+        "rows": len(learned.rows),
+        "panels": drawn,
+        "frame": drawings.frame(drawn),
+        "answer": answers.pulls(learned),
+        "clock": clock(learned.run.robot_seconds),
+        "settings": run_words(spec),
+        "unknown": unknown_shapes([spec.held]),
+        "excluded": any(arrow.excluded for panel in drawn for arrow in panel.arrows),
+    }
 
 
 def _broken_section(broken: Broken) -> dict[str, Any]:
     """Return what the page shows of a tool that broke."""
-    result = answers.unlearned(broken)
-    drawn = drawings.panels(broken.tool, broken.rows, result.excluded)
+    dead, rows = answers.excluded_rows(broken), broken.learned.rows
+    spec, left = broken.learned.run.spec, broken.trials[0].spec.held
+    gone = {number: row.trials for number, row in dead.items()}
+    drawn = drawings.panels(spec.held, spec.binding, rows, gone)
     table: dict[str, list[int]] = defaultdict(lambda: [0, 0, 0, 0])
-    for number, row in broken.rows.items():
-        out = number in result.excluded
-        counts = (out, number in result.missing, out and number in result.lost, True)
-        mine = table[str(row.exploratory)]
-        for column, count in enumerate(counts):
+    for number, row in rows.items():
+        one = dead.get(number)
+        out = (True, one.on_missing_side, one.lost) if one else (False, False, False)
+        mine = table[call_words(row.exploratory)]
+        for column, count in enumerate((*out, True)):
             mine[column] += count
     return {
-        "answer": answers.forgot(broken, result),
-        "tool": broken.tool,
-        "shape": broken.shape,
-        "side": bool(broken.missing_side),
+        "answer": answers.forgot(broken),
+        "tool": spec.held,
+        "shape": left,
+        "side": missing_side(spec.held, left) != 0.0,
         "panels": drawn,
-        "frame": drawings.frame([broken.tool], drawn),
-        "missing": broken.tool.parts_missing_in(broken.shape),
+        "frame": drawings.frame(drawn),
+        "missing": {part.name for part in spec.held.parts_missing_in(left)},
         "table": [(name, *counts) for name, counts in sorted(table.items())],
     }
 

@@ -1,0 +1,1 @@
+"""What records say, in numbers: sums, shares, intervals and comparisons; no words, no pictures."""

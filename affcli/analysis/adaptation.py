@@ -1,0 +1,162 @@
+"""How robots adapt to a broken tool step by step: tries on lost rows, probabilities (§7.2)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import accumulate
+from statistics import fmean
+
+from affcli.analysis.statistics import ENOUGH_ROBOTS, mean_interval, wilson
+from affcli.core.records import SessionInfo
+from affcli.core.results import StepSums, TrialGroup
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """The share of tries that were on lost affordances, at one step number.
+
+    Args:
+        number: which step.
+        trials: how many trials took it: those still running.
+        share: of them that tried a lost row.
+        interval: 95 %; None where there are too few robots for one.
+    """
+
+    number: int
+    trials: int
+    share: float
+    interval: tuple[float, float] | None
+
+
+@dataclass(frozen=True, slots=True)
+class MeanProbability:
+    """Mean replication probability of the rows on the missing side, after one step number.
+
+    Args:
+        number: which step; 0 for the beginning.
+        mean: over the rows, and over the trials.
+        interval: 95 % of the mean; None where there are too few robots for one.
+    """
+
+    number: int
+    mean: float
+    interval: tuple[float, float] | None
+
+
+@dataclass(frozen=True, slots=True)
+class AdaptationCourse:
+    """How the robots of a session adapted to a broken tool.
+
+    Args:
+        session: whose trials they are.
+        tool, shape: what the robots believed to hold, and what it was.
+        trials: with the broken tool.
+        shares: of the broken tool's trials, by step number.
+        broken, whole: probabilities with the broken tool and with the whole one; none when there
+            is no missing side, no row lies on it, or there are no such trials.
+    """
+
+    session: SessionInfo
+    tool: str
+    shape: str
+    trials: int
+    shares: tuple[Share, ...]
+    broken: tuple[MeanProbability, ...]
+    whole: tuple[MeanProbability, ...]
+
+    @classmethod
+    def of(
+        cls,
+        session: SessionInfo,
+        tool: str,
+        shape: str,
+        broken: Sequence[TrialGroup],
+        whole: Sequence[TrialGroup],
+    ) -> "AdaptationCourse":
+        """Sum up trials with the broken tool and with the whole one."""
+        shares = shares_of(broken)
+        last = shares[-1].number if shares else 0
+        trials = sum(group.trials for group in broken)
+        courses = (probabilities_of(groups, last) for groups in (broken, whole))
+        return cls(session, tool, shape, trials, shares, *courses)
+
+
+def has_intervals(groups: Sequence[TrialGroup]) -> bool:
+    """Tell whether there are intervals over these groups.
+
+    Those of one robot are its trials, and say what further trials of this robot would give. Of
+    several robots there must be `ENOUGH_ROBOTS`.
+    """
+    return len(groups) >= ENOUGH_ROBOTS or all(group.trials == 1 for group in groups)
+
+
+def shares_of(groups: Sequence[TrialGroup]) -> tuple[Share, ...]:
+    """Return the share of tries on lost affordances at each step number, among trials that run."""
+    steps: dict[int, list[StepSums]] = {}
+    for sums in (sums for group in groups for sums in group.steps):
+        steps.setdefault(sums.number, []).append(sums)
+    certain = has_intervals(groups)
+    shares = []
+    for number in sorted(steps):
+        trials = sum(sums.trials for sums in steps[number])
+        lost = sum(sums.lost for sums in steps[number])
+        pairs = [(sums.lost, sums.trials) for sums in steps[number]]
+        shares.append(
+            Share(number, trials, lost / trials, share_interval(pairs) if certain else None)
+        )
+    return tuple(shares)
+
+
+def share_interval(groups: Sequence[tuple[int, int]]) -> tuple[float, float]:
+    """Return a 95 % interval of a share from groups whose trials may be alike.
+
+    Wilson's interval for as many independent trials as these tell as much as: trials of one robot
+    share what it learned. Their number is divided by the design effect, how many times larger the
+    variance between groups makes that of the share (at least 1; 1 where it cannot be told).
+
+    Args:
+        groups: (of the kind in question, in all) in each group.
+    """
+    kind = sum(k for k, _ in groups)
+    n = sum(m for _, m in groups)
+    share = kind / n
+    alone = share * (1.0 - share) / n
+    effect = 1.0
+    if len(groups) > 1 and alone > 0.0:
+        squares = sum((k - share * m) ** 2 for k, m in groups)
+        between = len(groups) / (len(groups) - 1) * squares / n**2
+        effect = max(1.0, between / alone)
+    return wilson(kind / effect, n / effect)
+
+
+def probabilities_of(groups: Sequence[TrialGroup], last: int) -> tuple[MeanProbability, ...]:
+    """Return the mean probability on the missing side at the beginning and after each step.
+
+    It begins at 1, for every trial starts from the table as learned. Choice: a trial that ended
+    keeps its last value, as its table does; were it left out, the mean would be that of the trials
+    that are hardest. Each group counts the same.
+
+    Args:
+        groups: of trials.
+        last: up to which step number.
+
+    Returns:
+        In order; nothing when no trial has rows on the missing side.
+    """
+    courses = [_course(group, last) for group in groups if group.with_rows]
+    if not courses:
+        return ()
+    certain = has_intervals(groups) and len(courses) > 1
+    means = []
+    for number, values in enumerate(zip(*courses, strict=True)):
+        mean = fmean(values)
+        interval = mean_interval(values) if certain else None
+        if interval is not None:
+            interval = max(0.0, interval[0]), min(1.0, interval[1])
+        means.append(MeanProbability(number, mean, interval))
+    return tuple(means)
+
+
+def _course(group: TrialGroup, last: int) -> list[float]:
+    """Return the mean probability of a group's trials at the beginning and after each step."""
+    changes = {sums.number: sums.change / group.with_rows for sums in group.steps}
+    return list(accumulate((changes.get(n, 0.0) for n in range(1, last + 1)), initial=1.0))

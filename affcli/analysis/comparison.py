@@ -1,0 +1,126 @@
+"""Our successes beside the paper's (§7.1, §7.2)."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from affcli.analysis.paper import (
+    BROKEN,
+    BROKEN_TRIALS,
+    EXTENSION_OF_REACH,
+    STARTS,
+    TOTAL,
+    TRIALS,
+    papers_break,
+    papers_cell,
+)
+from affcli.analysis.reproduction import Reproduction
+from affcli.analysis.statistics import ENOUGH_ROBOTS, Spread
+from affcli.core.records import SessionInfo
+from affcli.core.results import TrialResult
+from affcli.core.trial import Outcome
+
+
+@dataclass(frozen=True, slots=True)
+class Beside:
+    """Successes beside the paper's.
+
+    Args:
+        paper: the paper's count; None where the paper has none.
+        counts: ours, one a robot; none when nothing was tried.
+        tried: out of how many.
+    """
+
+    paper: int | None
+    counts: Sequence[int]
+    tried: int
+
+    @property
+    def spread(self) -> Spread | None:
+        """Intervals over the robots; None when there are too few of them."""
+        return Spread.of(self.counts) if len(self.counts) >= ENOUGH_ROBOTS else None
+
+    @property
+    def mean(self) -> float:
+        """Mean of our counts; ValueError when there are none."""
+        return Spread.of(self.counts).mean
+
+    @property
+    def outside(self) -> bool:
+        """The paper's count does not lie in the central 95 % of robots."""
+        if self.spread is None or self.paper is None:
+            return False
+        return not self.spread.holds(self.paper)
+
+
+@dataclass(frozen=True, slots=True)
+class Results:
+    """All of the paper's counts with ours beside them.
+
+    Args:
+        session: the reproduction; None when each tool was learned by itself.
+        robots: how many; 1 when each tool was learned by itself.
+        runs: of single robots, the learning runs by sensor.
+        cells: by (tool, goal).
+        total: of all trials of the extension of reach; None when some were not done.
+        broken: of the 16 trials with the broken tool; None when they were not done.
+    """
+
+    session: SessionInfo | None
+    robots: int
+    runs: Mapping[str, Sequence[int]]
+    cells: Mapping[tuple[str, str], Beside]
+    total: Beside | None
+    broken: Beside | None
+
+
+def results_of_many(result: Reproduction) -> Results:
+    """Return the results of a reproduction that has the paper's cells."""
+    cells = {
+        cell: Beside(paper, result.cells[cell], STARTS)
+        for cell, paper in EXTENSION_OF_REACH.items()
+    }
+    total = Beside(TOTAL, result.totals, TRIALS)
+    broken = Beside(BROKEN, result.broken, BROKEN_TRIALS) if result.broken else None
+    return Results(result.session, result.robots, {}, cells, total, broken)
+
+
+def results_of_single(
+    solving: Iterable[TrialResult], breaking: Iterable[TrialResult]
+) -> Results | None:
+    """Return the results of robots that learned a tool each; of each start the latest trial counts.
+
+    Args:
+        solving: trials with whole tools of the learning runs in question, oldest first.
+        breaking: trials with broken tools, likewise.
+
+    Returns:
+        The results; None when none of the trials is the paper's.
+    """
+    whole = {(t.tool, t.goal, t.start): t for t in _counting(solving) if papers_cell(t)}
+    broken = {(t.goal, t.start): t for t in _counting(breaking) if papers_break(t)}
+    if not whole:
+        return None
+    tried: dict[tuple[str, str], list[bool]] = {cell: [] for cell in EXTENSION_OF_REACH}
+    for (tool, goal, _), trial in whole.items():
+        tried[tool, goal].append(trial.outcome is Outcome.SOLVED)
+    cells = {
+        cell: Beside(paper, [sum(tried[cell])] if tried[cell] else [], len(tried[cell]))
+        for cell, paper in EXTENSION_OF_REACH.items()
+    }
+    all_tried = all(cell.tried == STARTS for cell in cells.values())
+    solved = sum(sum(cell.counts) for cell in cells.values())
+    solved_broken = sum(trial.outcome is Outcome.SOLVED for trial in broken.values())
+    runs = {
+        sensor: sorted({trial.run_id for trial in whole.values() if trial.sensor == sensor})
+        for sensor in sorted({trial.sensor for trial in whole.values()})
+    }
+    return Results(
+        *(None, 1, runs, cells),
+        Beside(TOTAL, [solved], TRIALS) if all_tried else None,
+        Beside(BROKEN, [solved_broken], len(broken)) if len(broken) == BROKEN_TRIALS else None,
+    )
+
+
+def _counting(trials: Iterable[TrialResult]) -> Iterable[TrialResult]:
+    """Return the trials that count: a simulation that failed tells nothing."""
+    return (trial for trial in trials if trial.outcome is not Outcome.INVALID)

@@ -1,0 +1,160 @@
+"""What a database holds: learned tools, trials, finished reproductions."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from affcli.analysis.paper import EXTENSION_OF_REACH, other_parts, papers_break, papers_cell
+from affcli.analysis.reproduction import Reproduction
+from affcli.core.records import LearningRunInfo, SessionInfo
+from affcli.core.results import BehaviorGroup, RowUse, TrialResult
+from affcli.core.specs import Protocol
+from affcli.core.trial import Outcome
+
+
+class SolvedBy(NamedTuple):
+    """Whose trials are counted together, goal by goal."""
+
+    run: int
+    tool: str
+    sensor: str
+    planner: str
+    task_set: str
+
+
+@dataclass(frozen=True, slots=True)
+class GoalCounts:
+    """Successes of one learning run's trials.
+
+    Args:
+        by: whose trials.
+        papers: tool, goals, planner and the parts of learning are the paper's.
+        goals: (solved, tried) by goal, in the order in which they were tried first.
+    """
+
+    by: SolvedBy
+    papers: bool
+    goals: Mapping[str, tuple[int, int]]
+
+    def paper(self, goal: str) -> int | None:
+        """Return the paper's successes of 4 at a goal; None where it has none."""
+        return EXTENSION_OF_REACH.get((self.by.tool, goal)) if self.papers else None
+
+
+@dataclass(frozen=True, slots=True)
+class ProtocolCounts:
+    """Counts over the trials of one protocol in one session.
+
+    Args:
+        trials, solved: how many, and how many of them were solved.
+        mean_steps: of the solved; None when none was.
+        tries_on_lost: tries of rows whose affordance was truly lost.
+        rows_excluded: rows that fell to a probability of 1/2 or less in some trial.
+    """
+
+    trials: int
+    solved: int
+    mean_steps: float | None
+    tries_on_lost: int
+    rows_excluded: int
+
+    @classmethod
+    def of(cls, ended: Sequence[TrialResult], uses: Iterable[RowUse]) -> "ProtocolCounts":
+        """Count the trials that ended, and what they made of rows."""
+        solved = [trial.steps for trial in ended if trial.outcome is Outcome.SOLVED]
+        used = list(uses)
+        return cls(
+            trials=len(ended),
+            solved=len(solved),
+            mean_steps=sum(solved) / len(solved) if solved else None,
+            tries_on_lost=sum(use.tries for use in used if use.lost),
+            rows_excluded=sum(use.deaths > 0 for use in used),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Breaking:
+    """One session in which a tool broke: the broken tool's trials and the whole one's.
+
+    Args:
+        session, run, seed, tool, shape, sensor, planner: which.
+        papers: tool, shape, tasks, planner and the parts of learning are the paper's.
+        broken, whole: counts of its trials.
+    """
+
+    session: int
+    run: int
+    seed: int
+    tool: str
+    shape: str
+    sensor: str
+    planner: str
+    papers: bool
+    broken: ProtocolCounts
+    whole: ProtocolCounts
+
+
+@dataclass(frozen=True, slots=True)
+class Overview:
+    """What a database holds.
+
+    Args:
+        learned: learning runs that stand for themselves, each with its behavior groups.
+        solved: successes of their ``solve`` trials.
+        breakings: the ``break-tool`` sessions, oldest first; of the same one done again, the last.
+        failures: how often each kind of failure occurred in these sessions.
+        trials: all trials of these sessions.
+        reproductions: the finished ones, oldest first.
+    """
+
+    learned: Sequence[tuple[LearningRunInfo, Sequence[BehaviorGroup]]]
+    solved: Sequence[GoalCounts]
+    breakings: Sequence[Breaking]
+    failures: Mapping[str, int]
+    trials: int
+    reproductions: Sequence[Reproduction]
+
+
+def goal_counts(
+    results: Iterable[TrialResult], runs: Iterable[LearningRunInfo]
+) -> list[GoalCounts]:
+    """Count successes by learning run, tool, sensor, planner and task set.
+
+    Args:
+        results: of ``solve``; those whose simulation failed count for nothing.
+        runs: the learning runs whose tables were used.
+    """
+    as_the_paper = {run.id for run in runs if not other_parts(run.spec)}
+    counts: dict[tuple[SolvedBy, bool], dict[str, tuple[int, int]]] = {}
+    for trial in results:
+        if trial.outcome is Outcome.INVALID:
+            continue
+        by = SolvedBy(trial.run_id, trial.tool, trial.sensor, trial.planner, trial.task_set)
+        papers = trial.run_id in as_the_paper and papers_cell(trial)
+        goals = counts.setdefault((by, papers), {})
+        solved, tried = goals.get(trial.goal, (0, 0))
+        goals[trial.goal] = solved + (trial.outcome is Outcome.SOLVED), tried + 1
+    return [GoalCounts(by, papers, goals) for (by, papers), goals in counts.items()]
+
+
+def breaking_of(
+    session: SessionInfo,
+    results: Sequence[TrialResult],
+    uses: Mapping[Protocol, Iterable[RowUse]],
+) -> Breaking | None:
+    """Return the counts of one ``break-tool`` session; None when no broken tool was tried in it."""
+    adapting = [r for r in results if r.protocol is Protocol.TOOL_ADAPTATION]
+    if not adapting:
+        return None
+    counts = {
+        protocol: ProtocolCounts.of([r for r in results if r.protocol is protocol], of_protocol)
+        for protocol, of_protocol in uses.items()
+    }
+    first = adapting[0]
+    return Breaking(
+        *(session.id, first.run_id, session.spec.seed, first.tool, first.shape),
+        *(first.sensor, first.planner),
+        papers=not other_parts(session.spec) and all(map(papers_break, adapting)),
+        broken=counts[Protocol.TOOL_ADAPTATION],
+        whole=counts[Protocol.EXTENSION_OF_REACH],
+    )

@@ -1,0 +1,117 @@
+"""The paper's own results and parts (§5 to §7), and what of ours may stand beside them."""
+
+import json
+from types import MappingProxyType
+
+from affcli.core.behavior import GRASP
+from affcli.core.identity import Component
+from affcli.core.results import SuccessCount, TrialResult
+from affcli.core.specs import (
+    BROKEN_SHAPE,
+    BROKEN_TOOL,
+    LearningSpec,
+    Protocol,
+    SessionSpec,
+    TrialSpec,
+)
+
+GOALS = ("1", "2", "3", "4")
+STARTS = 4
+TASK_SET, PLANNER, EXPLORER, WORLD = "extension-of-reach", "nested-query", "random", "table"
+
+EXTENSION_OF_REACH = MappingProxyType(
+    {
+        (tool, goal): count
+        for tool, counts in {
+            "stick": (0, 2, 4, 4),
+            "l-stick": (4, 2, 4, 4),
+            "l-hook": (4, 3, 4, 4),
+            "t-stick": (3, 3, 4, 4),
+            "t-hook": (4, 4, 4, 4),
+        }.items()
+        for goal, count in zip(GOALS, counts, strict=True)
+    }
+)
+"""Successes of 4 starts by (tool, goal): the table of §7.1."""
+
+TOOLS = tuple(dict.fromkeys(tool for tool, _ in EXTENSION_OF_REACH))
+
+TOTAL, TRIALS = sum(EXTENSION_OF_REACH.values()), STARTS * len(EXTENSION_OF_REACH)
+"""69 of 80."""
+
+BROKEN, BROKEN_TRIALS = 16, STARTS * len(GOALS)
+"""16 of 16 with the T-hook that had become an L-hook (§7.2)."""
+
+BEHAVIORS = frozenset(
+    f"{name} {distance}"
+    for name in ("extend arm", "contract arm", "slide arm left", "slide arm right")
+    for distance in (2, 5)
+)
+"""The exploratory behaviors that make rows, each with its distance in inches (§5)."""
+
+_HANDLE_BELOW_GRASP = 1.0
+"""Where on the handle the paper's grasp is unless the settings say otherwise (in)."""
+
+
+def papers_cell(of: SuccessCount | TrialResult) -> bool:
+    """Tell whether trials are among the paper's 80: its tool, goal, task and planner (§7.1)."""
+    return (
+        of.protocol is Protocol.EXTENSION_OF_REACH
+        and (of.tool, of.goal) in EXTENSION_OF_REACH
+        and _papers_trials(of)
+    )
+
+
+def papers_break(of: SuccessCount | TrialResult) -> bool:
+    """Tell whether trials are among the paper's 16 with the T-hook that became an L-hook (§7.2)."""
+    return (
+        of.protocol is Protocol.TOOL_ADAPTATION
+        and (of.tool, of.shape) == (BROKEN_TOOL, BROKEN_SHAPE)
+        and of.goal in GOALS
+        and _papers_trials(of)
+    )
+
+
+def papers_successes(spec: TrialSpec) -> int | None:
+    """Return the paper's successes of 4 with the tool and at the goal of a trial.
+
+    None when it has none, or when the trial has another protocol, task set or planner.
+    """
+    which = (spec.protocol, spec.task.task_set, str(spec.planner))
+    if which != (Protocol.EXTENSION_OF_REACH, TASK_SET, PLANNER):
+        return None
+    return EXTENSION_OF_REACH.get((spec.tool, spec.goal))
+
+
+def papers_breaking(spec: TrialSpec, learned: LearningSpec) -> bool:
+    """Tell whether a trial with a broken tool, and the learning before, are the paper's (§7.2)."""
+    which = (spec.tool, spec.shape, spec.task.task_set, str(spec.planner))
+    return which == (BROKEN_TOOL, BROKEN_SHAPE, TASK_SET, PLANNER) and not other_parts(learned)
+
+
+def _papers_trials(of: SuccessCount | TrialResult) -> bool:
+    """Tell whether tasks and planner are the paper's."""
+    return (of.task_set, of.planner) == (TASK_SET, PLANNER)
+
+
+def other_parts(spec: LearningSpec | SessionSpec) -> dict[str, str]:
+    """Return the parts of a run that are not the paper's, as text by what they are.
+
+    The sensor and the settings are not among them: the paper does not tell them in numbers.
+    """
+    parts = {}
+    behaviors = [str(one.call) for one in spec.repertoire]
+    if set(behaviors) != BEHAVIORS:
+        parts["behaviors"] = ", ".join(behaviors)
+    point = json.loads(spec.settings).get("tools.handle_below_grasp", _HANDLE_BELOW_GRASP)
+    if (spec.binding.name, spec.binding.params) != (GRASP, (("grasp_point", point),)):
+        parts["binding"] = str(spec.binding)
+    named = {"world": (spec.world, WORLD), "explorer": (spec.explorer, EXPLORER)}
+    if isinstance(spec, SessionSpec):
+        named["planner"] = (spec.planner, PLANNER)
+    return parts | {kind: str(part) for kind, (part, own) in named.items() if _other(part, own)}
+
+
+def _other(part: Component, own: str) -> bool:
+    """Tell whether a part is not the paper's; the version of ours does not matter."""
+    return part.name != own or bool(part.params)

@@ -1,0 +1,135 @@
+"""What many robots gave: successes beside the paper's, and of what the paper has not (§7)."""
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from affcli.analysis.paper import EXTENSION_OF_REACH, other_parts, papers_break, papers_cell
+from affcli.core.records import SessionInfo
+from affcli.core.results import OutcomeCount, SuccessCount
+from affcli.core.specs import Protocol
+from affcli.core.trial import Outcome
+
+
+class TrialKind(NamedTuple):
+    """What trials have in common, but for robot, goal and start."""
+
+    protocol: Protocol
+    tool: str
+    shape: str
+    task_set: str
+    planner: str
+
+
+class Solved(NamedTuple):
+    """Successes of one kind of trials at one goal.
+
+    Args:
+        counts: of each robot.
+        tried: how many trials the robots ended, in all.
+    """
+
+    counts: Sequence[int]
+    tried: int
+
+
+@dataclass(frozen=True, slots=True)
+class Reproduction:
+    """What the robots of a session gave.
+
+    Args:
+        session: which.
+        robots: how many of its robots are saved.
+        cells: successes of 4 of each robot by the paper's (tool, goal); none when the robots
+            learned or chose otherwise than the paper's, or did none of its tasks.
+        broken: successes of 16 of each robot with the paper's broken tool; none likewise.
+        others: what the paper has not, by goal.
+        failures: how often each kind of failure occurred, over all trials.
+        trials: how many they are.
+        tries_on_lost: tries on lost affordances with broken tools, over all trials.
+    """
+
+    session: SessionInfo
+    robots: int
+    cells: Mapping[tuple[str, str], Sequence[int]]
+    broken: Sequence[int]
+    others: Mapping[TrialKind, Mapping[str, Solved]]
+    failures: Mapping[str, int]
+    trials: int
+    tries_on_lost: int
+
+    @classmethod
+    def of(
+        cls,
+        session: SessionInfo,
+        robots: int,
+        counts: Iterable[SuccessCount],
+        outcomes: Iterable[OutcomeCount],
+        tries_on_lost: int,
+    ) -> "Reproduction":
+        """Sum up the trials of a session.
+
+        Args:
+            session: which.
+            robots: how many are saved, numbered from 0.
+            counts: successes by robot, kind of trial and goal.
+            outcomes: how its trials ended.
+            tries_on_lost: over all of them.
+        """
+        papers = not other_parts(session.spec)
+        solved: dict[tuple[str, str], Counter[int]] = defaultdict(Counter)
+        broken: Counter[int] = Counter()
+        others: dict[TrialKind, dict[str, list[SuccessCount]]] = {}
+        for one in counts:
+            if papers and papers_cell(one):
+                solved[one.tool, one.goal][one.robot] += one.solved
+            elif papers and papers_break(one):
+                broken[one.robot] += one.solved
+            else:
+                kind = TrialKind(one.protocol, one.tool, one.shape, one.task_set, one.planner)
+                others.setdefault(kind, {}).setdefault(one.goal, []).append(one)
+        failures, trials = failures_in(outcomes)
+        return cls(
+            session,
+            robots,
+            {cell: _by_robot(solved[cell], robots) for cell in EXTENSION_OF_REACH if solved},
+            _by_robot(broken, robots) if broken else (),
+            {
+                kind: {goal: _solved(some, robots) for goal, some in goals.items()}
+                for kind, goals in others.items()
+            },
+            failures,
+            trials,
+            tries_on_lost,
+        )
+
+    @property
+    def totals(self) -> list[int]:
+        """Successes of the paper's 80 of each robot; none without cells."""
+        return [sum(column) for column in zip(*self.cells.values(), strict=True)]
+
+
+def failures_in(outcomes: Iterable[OutcomeCount]) -> tuple[dict[str, int], int]:
+    """Return how often each kind of failure occurred, the commonest first; and all trials."""
+    kinds: Counter[str] = Counter()
+    for count in outcomes:
+        kinds[count.outcome.value] += count.trials
+    trials = kinds.total()
+    del kinds[Outcome.SOLVED.value]
+    return dict(sorted(kinds.items(), key=lambda item: (-item[1], item[0]))), trials
+
+
+def _solved(counts: Iterable[SuccessCount], robots: int) -> Solved:
+    """Return the successes of each robot, and all trials."""
+    by_robot: Counter[int] = Counter()
+    tried = 0
+    for one in counts:
+        by_robot[one.robot] += one.solved
+        tried += one.trials
+    return Solved(_by_robot(by_robot, robots), tried)
+
+
+def _by_robot(counts: Mapping[int, int], robots: int) -> list[int]:
+    """Return one count a robot."""
+    return [counts.get(robot, 0) for robot in range(robots)]

@@ -1,0 +1,200 @@
+"""Affordance tables and rows as the figures show them: arrows over tools (Figs. 5 and 6)."""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+
+from affcli.analysis.regions import parts_at
+from affcli.analysis.row_status import RowStatus, around_trial, compared, current
+from affcli.core.affordance import Affordance
+from affcli.core.behavior import BehaviorCall
+from affcli.core.records import LearningRunInfo, StoredRow, StoredStep, TrialInfo
+from affcli.core.tool import Tool, ToolPart, hold_of
+from affcli.errors import one_line
+from affcli.report.figures.words import tool_words
+from affcli.report.words import call_words, clock, many, unknown_shapes
+
+
+@dataclass(frozen=True, slots=True)
+class TableView:
+    """An affordance table as a figure shows it: arrows over a tool.
+
+    Args:
+        heading: what stands over it; may be empty.
+        parts: of the tool, as it is held (in, hand frame); none when its shape is not known.
+        missing: parts that the tool has lost.
+        puck_radius: of the attractor (in).
+        rows: the rows, each with its status.
+    """
+
+    heading: str
+    parts: Sequence[ToolPart]
+    missing: Sequence[ToolPart]
+    puck_radius: float
+    rows: Sequence[tuple[Affordance, RowStatus]]
+
+    def count(self, status: RowStatus) -> int:
+        """Return how many of its rows have this status."""
+        return sum(its is status for _, its in self.rows)
+
+
+@dataclass(frozen=True, slots=True)
+class RowView:
+    """One row as a figure shows it: with what the robot held and what that pushed.
+
+    Args:
+        row: the row, with its counters as they are now.
+        tool: the tool it was learned with, as it was held (in, hand frame).
+        puck_radius: of the attractor (in).
+    """
+
+    row: Affordance
+    tool: Tool
+    puck_radius: float
+
+
+@dataclass(frozen=True, slots=True)
+class ShownTables:
+    """One affordance table, or two side by side.
+
+    Args:
+        title: what is shown, in words.
+        calls: the exploratory behaviors, each with its parameters.
+        views: the tables.
+        key: what each status of a row means here.
+    """
+
+    title: str
+    calls: Sequence[BehaviorCall]
+    views: Sequence[TableView]
+    key: Mapping[RowStatus, str]
+
+
+EXCLUDED = "excluded: replication probability 1/2 or below"
+
+
+def run_shown(run: LearningRunInfo, rows: Sequence[Affordance], puck_radius: float) -> ShownTables:
+    """Return the table of a learning run as it is now: excluded rows are told apart."""
+    view = _view("", run, run.spec.held, None, puck_radius, rows, current(rows))
+    left_out = view.count(RowStatus.EXCLUDED)
+    counted = many(len(rows), "row") + (f", {left_out} of them excluded" if left_out else "")
+    title = f"run {run.id}, {run.spec.tool}{_unfinished(run)}, {counted}"
+    key = {RowStatus.LIVE: "live row of the affordance table", RowStatus.EXCLUDED: EXCLUDED}
+    return _shown(title, run, [view], key, run.spec.held)
+
+
+def runs_compared(
+    runs: tuple[LearningRunInfo, LearningRunInfo],
+    rows: tuple[Sequence[Affordance], Sequence[Affordance]],
+    radii: tuple[float, float],
+) -> ShownTables:
+    """Return the tables of two learning runs: what both have, and what only one of them has."""
+    one, other = runs
+    held = one.spec.held, other.spec.held
+    statuses = compared(*rows)
+    before = _view(_heading(one), one, held[0], None, radii[0], rows[0], statuses[0])
+    after = _view(_heading(other), other, held[1], held[0], radii[1], rows[1], statuses[1])
+    title = (
+        f"runs {one.id} ({one.spec.tool}) and {other.id} ({other.spec.tool}): "
+        f"{before.count(RowStatus.KEPT)} of {many(len(rows[0]), 'row')} kept, "
+        f"{before.count(RowStatus.LOST)} lost, {after.count(RowStatus.WON)} of "
+        f"{many(len(rows[1]), 'row')} won"
+    )
+    key = {
+        RowStatus.KEPT: "in both runs",
+        RowStatus.LOST: f"lost: only in run {one.id}",
+        RowStatus.WON: f"won: only in run {other.id}",
+        RowStatus.EXCLUDED: "excluded",
+    }
+    return _shown(title, one, (before, after), key, *held)
+
+
+def trial_shown(
+    trial: TrialInfo,
+    run: LearningRunInfo,
+    stored: Sequence[StoredRow],
+    steps: Sequence[StoredStep],
+    excluded_before: Collection[int],
+    puck_radius: float,
+) -> ShownTables:
+    """Return the table that a trial started from, and what it left of it.
+
+    Args:
+        trial: which.
+        run: the learning run whose table it used.
+        stored: all its rows.
+        steps: those of the trial.
+        excluded_before: the rows that were excluded before it.
+        puck_radius: of the attractor (in).
+    """
+    tried = {step.affordance_id for step in steps}
+    died = {step.affordance_id for step in steps if step.died}
+    # A row that was tried had not been excluded, whatever another process did meanwhile.
+    statuses = around_trial([row.id for row in stored], set(excluded_before) - tried, died)
+    rows = [row.row for row in stored]
+    tool, left = run.spec.held, trial.spec.held
+    broke = trial.spec.shape != trial.spec.tool
+    shape = f": the shape of the {tool_words(left.name)}" if broke else ""
+    before = _view(f"Before trial {trial.id}", run, tool, None, puck_radius, rows, statuses[0])
+    after = _view(f"After trial {trial.id}{shape}", run, left, tool, puck_radius, rows, statuses[1])
+    became = f" that became {left.name}" if broke else ""
+    so_far = "" if trial.outcome else f" (unfinished, {many(len(steps), 'step')} so far)"
+    title = (
+        f"trial {trial.id}, {tool.name}{became}{so_far}: "
+        f"{after.count(RowStatus.KEPT)} rows kept, {after.count(RowStatus.LOST)} lost"
+    )
+    key = {
+        RowStatus.KEPT: "kept",
+        RowStatus.LOST: "lost: its probability fell to 1/2 or below in the trial",
+        RowStatus.EXCLUDED: "excluded before the trial",
+    }
+    return _shown(title, run, (before, after), key, tool, left)
+
+
+def row_shown(stored: StoredRow, run: LearningRunInfo, puck_radius: float) -> tuple[str, RowView]:
+    """Return a row of an affordance table with a title."""
+    row, tool = stored.row, run.spec.held
+    what = f"row {stored.id}, {tool.name}, {call_words(row.exploratory)} (run {run.id})"
+    title = "; ".join(filter(None, (what, unknown_shapes([tool]))))
+    held = tool.held(hold_of(row.binding)) if tool.parts else tool
+    return one_line(title, 500), RowView(row, held, puck_radius)
+
+
+def _shown(
+    title: str,
+    run: LearningRunInfo,
+    views: Sequence[TableView],
+    key: Mapping[RowStatus, str],
+    *tools: Tool,
+) -> ShownTables:
+    """Return tables under a title that names the tools whose shape is not known."""
+    calls = [one.call for one in run.spec.repertoire]
+    title = "; ".join(filter(None, (title, unknown_shapes(tools))))
+    return ShownTables(one_line(title, 500), calls, views, key)
+
+
+def _view(
+    heading: str,
+    run: LearningRunInfo,
+    tool: Tool,
+    was: Tool | None,
+    puck_radius: float,
+    rows: Sequence[Affordance],
+    statuses: Sequence[RowStatus],
+) -> TableView:
+    """Return a table over a tool; with `was`, what that had and the tool lacks is missing."""
+    binding = run.spec.binding
+    parts = parts_at(tool, binding, 0.0)
+    kept = {part.name for part in parts}
+    before = () if was is None or not tool.parts else parts_at(was, binding, 0.0)
+    missing = [part for part in before if part.name not in kept]
+    return TableView(heading, parts, missing, puck_radius, list(zip(rows, statuses, strict=True)))
+
+
+def _heading(run: LearningRunInfo) -> str:
+    """Return what stands over the table of one of several runs."""
+    return f"Run {run.id}: {tool_words(run.spec.tool)}{_unfinished(run)}"
+
+
+def _unfinished(run: LearningRunInfo) -> str:
+    """Return in words how far a run came that is not finished; empty if it is."""
+    return "" if run.status == "done" else f" (unfinished, {clock(run.robot_seconds)} so far)"

@@ -1,0 +1,133 @@
+"""Words and numbers as all reports write them."""
+
+import json
+from collections.abc import Iterable
+
+from affcli.analysis.paper import other_parts
+from affcli.core.behavior import BehaviorCall
+from affcli.core.change_detection import MOVEMENT_THRESHOLD
+from affcli.core.choice import Reason, Reasons
+from affcli.core.geometry import direction_degrees
+from affcli.core.observation import Movement
+from affcli.core.specs import LearningSpec, SessionSpec, TrialSpec
+from affcli.core.tool import Tool
+from affcli.errors import one_line
+
+
+def many(count: int, noun: str) -> str:
+    """Return a count with its noun: ``1 row``, ``2 rows``; ``2 tries``."""
+    if count == 1:
+        return f"1 {noun}"
+    return f"{count} {noun[:-1]}ies" if noun.endswith("ry") else f"{count} {noun}s"
+
+
+def clock(seconds: float) -> str:
+    """Return robot time as hours and minutes, or minutes and seconds below an hour."""
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes:02} min" if hours else f"{minutes} min {rest:02} s"
+
+
+def fixed(value: float, digits: int) -> str:
+    """Return a number with so many digits, a plain 0 for the -0 that rounding may give."""
+    return f"{round(value, digits) + 0.0:.{digits}f}"
+
+
+def whole_degrees(direction: float) -> int:
+    """Return a direction as whole degrees from 0 to 359."""
+    return round(direction) % 360
+
+
+def degrees_of(dx: float, dy: float) -> int:
+    """Return where a movement goes in whole degrees: 0 right, 90 away from the robot."""
+    return whole_degrees(direction_degrees(dx, dy))
+
+
+def movement_words(movement: Movement) -> str:
+    """Return a movement as ``4.0 in at 180 deg``; ``none`` when T does not detect it (§5.2)."""
+    if movement.distance <= MOVEMENT_THRESHOLD:
+        return "none"
+    return f"{movement.distance:.1f} in at {degrees_of(movement.dx, movement.dy)} deg"
+
+
+def movement_cell(movement: Movement) -> str:
+    """Return a movement for a column that names the units: ``4.0 at 180``."""
+    return movement_words(movement).replace(" in ", " ").removesuffix(" deg")
+
+
+def call_words(call: BehaviorCall) -> str:
+    """Return a behavior with its parameters; inches have no unit, degrees do: ``turn wrist 30
+    deg``.
+    """
+    values = (f"{v:g} deg" if name.endswith("angle") else f"{v:g}" for name, v in call.params)
+    return one_line(" ".join([call.name, *values]), 60)
+
+
+def call_title(call: BehaviorCall) -> str:
+    """Return a behavior with its parameters and units: ``extend arm, 5 in``."""
+    return one_line(", ".join(filter(None, (call.name, parameter_words(call)))), 60)
+
+
+def parameter_words(call: BehaviorCall) -> str:
+    """Return a behavior's parameters with their units: ``2 in``, or ``30 deg`` for an angle."""
+    return ", ".join(
+        f"{value:g} {'deg' if name.endswith('angle') else 'in'}" for name, value in call.params
+    )
+
+
+def reason_words(reason: Reason) -> str:
+    """Return a reason: ``24 nearest``, or ``expected distance 3.2`` where no rows were counted."""
+    name = one_line(reason.name, 40)
+    if reason.rows is not None:
+        return f"{reason.rows} {name}"
+    return name if reason.value is None else f"{name} {reason.value:.3g}"
+
+
+def reasons_words(reasons: Reasons, *, chosen: bool = True) -> str:
+    """Return what a planner went by, and that it chose one row."""
+    words = [reason_words(reason) for reason in reasons]
+    return ", ".join([*words, *(["1 chosen"] if chosen else [])])
+
+
+def settings_words(settings: str) -> str:
+    """Return how settings differ from the first defaults: ``defaults``, or each one.
+
+    Args:
+        settings: as a spec keeps them.
+    """
+    values = json.loads(settings).items()
+    words = (f"{k} = {v if isinstance(v, str) else format(v, 'g')}" for k, v in values)
+    return one_line(", ".join(words), 2_000) or "defaults"
+
+
+def parts_words(spec: LearningSpec | SessionSpec) -> str:
+    """Return the parts of a run that are not the paper's: ``binding grasp 3``; empty for none."""
+    return ", ".join(f"{kind} {one_line(text)}" for kind, text in other_parts(spec).items())
+
+
+def run_words(spec: LearningSpec | SessionSpec) -> str:
+    """Return settings, parts and sensor of a run, as far as they are not the usual ones."""
+    words = [parts_words(spec), "" if spec.sensor == "noisy" else f"sensor {spec.sensor}"]
+    settings = settings_words(spec.settings)
+    if settings != "defaults" or not any(words):
+        words.insert(0, settings)
+    return ", ".join(filter(None, words))
+
+
+def trial_words(spec: TrialSpec) -> str:
+    """Return which trial: ``t-hook (truly l-hook), goal 3, start 1``."""
+    truly = "" if spec.shape == spec.tool else f" (truly {spec.shape})"
+    return one_line(f"{spec.tool}{truly}, goal {spec.goal}, start {spec.start}")
+
+
+def unknown_shapes(tools: Iterable[Tool]) -> str:
+    """Return the line that says which tools are left out of drawings; empty when none is."""
+    names = sorted({one_line(tool.name, 40) for tool in tools if not tool.parts})
+    if not names:
+        return ""
+    return f"not drawn, for this affcli does not know the shape: {', '.join(names)}"
+
+
+def in_order(names: Iterable[str]) -> list[str]:
+    """Return names of goals or starts once each: numbers by value, then words."""
+    return sorted(set(names), key=lambda name: (not name.isdecimal(), len(name), name))
