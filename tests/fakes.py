@@ -4,6 +4,7 @@ The three share a `FakeTable`. What a behavior does to the attractor, which wris
 reach and when lowering the tool is blocked are scripted by the test.
 """
 
+import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import repeat
@@ -19,7 +20,7 @@ from affcli.core.behavior import (
     Execution,
     ExecutionStatus,
 )
-from affcli.core.geometry import Point
+from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Observation
 from affcli.core.task import GoalRegion
 from affcli.core.tool import Color
@@ -58,7 +59,7 @@ class FakeTable:
     """What the three fakes share: where attractor, wrist and goal are."""
 
     attractor: Point = Point(0.0, 24.0)
-    wrist: Point = Point(0.0, 16.0)
+    wrist: Pose = Pose(0.0, 16.0)
     goal: GoalRegion | None = None
     tool_color: Color = TOOL_COLOR
 
@@ -81,6 +82,7 @@ class FakeRobot:
     endings: Iterable[ExecutionStatus] = ()
     reachable: Callable[[Point], bool] = everywhere
     clock: float = 0.0
+    holding: BehaviorCall | None = None
     executed: list[tuple[BehaviorCall, Observation | None]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -88,7 +90,7 @@ class FakeRobot:
         self.endings = iter(self.endings)
 
     @property
-    def wrist(self) -> Point:
+    def wrist(self) -> Pose:
         return self.table.wrist
 
     @property
@@ -106,8 +108,11 @@ class FakeRobot:
         if call.name == POSITION_WRIST:
             assert seen is not None
             status = next(_ongoing(self.placings))
-            self.table.wrist = Point(seen.object_x - call["x"], seen.object_y - call["y"])
-        elif call.name != GRASP:
+            x, y = seen.wrist_for(Point(call["x"], call["y"]))
+            self.table.wrist = Pose(x, y, math.radians(call.get("angle", 0.0)))
+        elif call.name == GRASP:
+            self.holding = call
+        else:
             status = next(_ongoing(self.endings))
             dx, dy = self.effect(call)
             at = self.table.attractor

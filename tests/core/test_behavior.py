@@ -2,13 +2,8 @@
 
 import pytest
 
-from affcli.core.behavior import (
-    CONTRACT_ARM,
-    GRASP,
-    OFFSET_DISTANCES,
-    POSITION_WRIST,
-    BehaviorCall,
-)
+from affcli.behaviors.moving import CONTRACT_ARM, OFFSET_DISTANCES
+from affcli.core.behavior import GRASP, POSITION_WRIST, BehaviorCall
 
 
 def test_the_two_offset_distances_are_2_and_5_inches() -> None:

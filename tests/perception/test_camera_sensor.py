@@ -8,11 +8,11 @@ import pytest
 
 from affcli.core.affordance_table import COLOR_TOLERANCE
 from affcli.core.geometry import Point
-from affcli.core.task import goal_regions
-from affcli.core.tool import TOOL_COLORS, TOOL_PARTS
 from affcli.errors import BadInputError, NotSeenError
 from affcli.perception.camera_sensor import CameraSensor, power_up
 from affcli.perception.camera_settings import CameraSettings
+from affcli.simulation.tasks.extension_of_reach import goal_regions
+from affcli.simulation.tools.paper import TOOL_COLORS, TOOL_PARTS
 from tests.perception.views import WORKSPACE, default_eye, scene
 
 

@@ -8,13 +8,14 @@ import pytest
 from affcli.config import Settings
 from affcli.core.geometry import Point
 from affcli.core.scene import Scene
-from affcli.core.task import GOAL_NUMBERS, START_NUMBERS, goal_regions, start_positions
-from affcli.core.tool import TOOL_PARTS
-from affcli.core.trial import LearningSpec
+from affcli.core.specs import LearningSpec
+from affcli.core.task import GOAL_NUMBERS, START_NUMBERS
 from affcli.errors import NotSeenError
 from affcli.lab.learning_run import LearningRun
 from affcli.perception.camera import Array
 from affcli.perception.location import places_of
+from affcli.simulation.tasks.extension_of_reach import goal_regions, start_positions
+from affcli.simulation.tools.paper import TOOL_PARTS
 from tests.perception.views import SQUARE, WORKSPACE, default_eye, gap, scene
 
 CLEAR = 1.0

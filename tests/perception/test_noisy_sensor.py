@@ -12,9 +12,10 @@ from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Observation
 from affcli.core.scene import Scene
 from affcli.core.task import GoalRegion
-from affcli.core.tool import PUCK_COLOR, Color, paper_tools
+from affcli.core.tool import PUCK_COLOR, Color
 from affcli.core.workspace import ToolGeometry
 from affcli.perception.noisy_sensor import NoisySensor, SensorSettings
+from affcli.simulation.tools.paper import paper_tools
 from tests.factories import observation, places, seeds
 
 STICK = next(iter(paper_tools(ToolGeometry()).values()))

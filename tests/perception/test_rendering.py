@@ -7,11 +7,12 @@ import shapely
 from affcli.core.geometry import Point, Pose
 from affcli.core.scene import Scene
 from affcli.core.task import GoalRegion
-from affcli.core.tool import PUCK_COLOR, ToolName, paper_tools
+from affcli.core.tool import PUCK_COLOR, ToolName
 from affcli.perception.camera_settings import CameraSettings
 from affcli.perception.palette import GOAL_COLOR
 from affcli.perception.rendering import Picture, Renderer
 from affcli.perception.solids import circle
+from affcli.simulation.tools.paper import paper_tools
 from tests.perception.views import WORKSPACE, flat, scene
 
 PLAIN = CameraSettings(grey_noise=0.0, blur_px=0.0, uneven_light=0.0)

@@ -8,8 +8,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from affcli.core.task import goal_regions
-from affcli.core.tool import TOOL_PARTS, Color
+from affcli.core.tool import Color
 from affcli.core.workspace import TaskLayout
 from affcli.errors import BadInputError, NotSeenError
 from affcli.perception.camera_settings import CameraSettings
@@ -25,6 +24,8 @@ from affcli.perception.palette import (
 )
 from affcli.perception.rendering import Picture, Renderer
 from affcli.perception.segmentation import NO_CLASS, Segmentation, Segmenter
+from affcli.simulation.tasks.extension_of_reach import goal_regions
+from affcli.simulation.tools.paper import TOOL_PARTS
 from tests.perception.views import WORKSPACE, scene
 
 CLASSES = paper_palette(WORKSPACE)

@@ -9,12 +9,13 @@ from hypothesis import strategies as st
 from affcli.core.geometry import Point, Pose
 from affcli.core.scene import Scene
 from affcli.core.task import GoalRegion
-from affcli.core.tool import PUCK_COLOR, ToolName, paper_tools
+from affcli.core.tool import PUCK_COLOR, ToolName
 from affcli.core.workspace import Workspace
 from affcli.perception.camera import Array, Camera, ImageSensor, looking
 from affcli.perception.camera_sensor import Eye, power_up
 from affcli.perception.camera_settings import CameraSettings
 from affcli.perception.markers import Pattern
+from affcli.simulation.tools.paper import paper_tools
 
 WORKSPACE = Workspace()
 SENSOR = ImageSensor()

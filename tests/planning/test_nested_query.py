@@ -13,7 +13,7 @@ from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import COLOR_TOLERANCE, AffordanceTable, Rows
 from affcli.core.geometry import Point
 from affcli.core.observation import Observation
-from affcli.core.tool import TOOL_COLORS, Color, ToolName
+from affcli.core.tool import Color, ToolName
 from affcli.planning import nested_query
 from affcli.planning.nested_query import (
     choose_row,
@@ -23,6 +23,7 @@ from affcli.planning.nested_query import (
     top_by_expected_distance,
     wrist_within_reach,
 )
+from affcli.simulation.tools.paper import TOOL_COLORS
 from tests.factories import (
     EIGHTH,
     TOOL_COLOR,

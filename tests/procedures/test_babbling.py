@@ -7,16 +7,17 @@ from itertools import count, islice, repeat
 
 import numpy as np
 import pytest
+from affcli.behaviors.registry import paper_behaviors
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from affcli.behaviors.registry import paper_behaviors
 from affcli.core.affordance import Affordance
+from affcli.core.babbling_box import BabblingSettings
 from affcli.core.behavior import GRASP, POSITION_WRIST, ExecutionStatus
 from affcli.core.geometry import Point
 from affcli.core.trial import BabblingRecord
 from affcli.core.workspace import Workspace
-from affcli.procedures.babbling import BabblingSettings, BabblingState, babble
+from affcli.procedures.babbling import BabblingState, babble
 from tests.factories import BINDING, EIGHTH, observation, places
 from tests.fakes import (
     FakeExperimenter,

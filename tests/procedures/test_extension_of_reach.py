@@ -13,10 +13,11 @@ from affcli.core.behavior import POSITION_WRIST, BehaviorCall, ExecutionStatus
 from affcli.core.geometry import Point
 from affcli.core.observation import movement
 from affcli.core.task import GoalRegion
-from affcli.core.tool import TOOL_COLORS, ToolName
+from affcli.core.tool import ToolName
 from affcli.core.trial import Outcome, StepRecord, TrialEnd
 from affcli.errors import SimulationDivergedError
 from affcli.procedures.extension_of_reach import TrialLimits, extension_of_reach
+from affcli.simulation.tools.paper import TOOL_COLORS
 from tests.factories import BINDING, EIGHTH, affordance, goal_at, table_of
 from tests.fakes import (
     CALL_SECONDS,

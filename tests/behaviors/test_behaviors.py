@@ -3,19 +3,17 @@
 from itertools import product
 
 import pytest
+from affcli.behaviors.registry import paper_behaviors
 from hypothesis import given, settings
 
-from affcli.behaviors.registry import DIRECTIONS, paper_behaviors
-from affcli.core.behavior import (
+from affcli.behaviors.moving import (
     CONTRACT_ARM,
+    DIRECTIONS,
     EXTEND_ARM,
-    GRASP,
-    POSITION_WRIST,
     SLIDE_ARM_LEFT,
     SLIDE_ARM_RIGHT,
-    BehaviorCall,
-    BehaviorName,
 )
+from affcli.core.behavior import GRASP, POSITION_WRIST, BehaviorCall, BehaviorName
 from affcli.core.geometry import Point
 from affcli.core.workspace import Workspace
 from tests.factories import observation, places
