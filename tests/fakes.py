@@ -5,7 +5,7 @@ reach and when lowering the tool is blocked are scripted by the test.
 """
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import repeat
 
@@ -74,6 +74,7 @@ class FakeRobot:
         placings: how each position wrist ends, one after the other; done when they run out.
         endings: how each exploratory behavior ends, one after the other; done when they run out.
         reachable: which wrist positions are in reach.
+        repertoire: the exploratory behaviors that it has; None for any.
     """
 
     table: FakeTable
@@ -81,6 +82,7 @@ class FakeRobot:
     placings: Iterable[ExecutionStatus] = ()
     endings: Iterable[ExecutionStatus] = ()
     reachable: Callable[[Point], bool] = everywhere
+    repertoire: Collection[BehaviorCall] | None = None
     clock: float = 0.0
     holding: BehaviorCall | None = None
     executed: list[tuple[BehaviorCall, Observation | None]] = field(default_factory=list)
@@ -103,13 +105,19 @@ class FakeRobot:
         return np.array([self.reachable(place) for place in places], dtype=bool)
 
     def execute(self, call: BehaviorCall, seen: Observation | None) -> Execution:
+        known = self.repertoire is None or call in self.repertoire
+        if not known and call.name not in (POSITION_WRIST, GRASP):
+            raise KeyError(call)
         self.executed.append((call, seen))
         start, status = self.table.wrist, ExecutionStatus.DONE
         if call.name == POSITION_WRIST:
             assert seen is not None
             status = next(_ongoing(self.placings))
             x, y = seen.wrist_for(Point(call["x"], call["y"]))
-            self.table.wrist = Pose(x, y, math.radians(call.get("angle", 0.0)))
+            if self.reachable(Point(x, y)):
+                self.table.wrist = Pose(x, y, math.radians(call.get("angle", 0.0)))
+            else:
+                status = ExecutionStatus.OUT_OF_REACH
         elif call.name == GRASP:
             self.holding = call
         else:
