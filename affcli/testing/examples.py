@@ -32,8 +32,8 @@ def observation(at: Point, wrist: Point, tool: tuple[float, float, float] = TOOL
     return Observation(*at, 0.0, at.x - wrist.x, at.y - wrist.y, 0.0, *OBJECT, *tool)
 
 
-def rows(count: int, seed: int = 0, used: int = 1) -> tuple[Affordance, ...]:
-    """Return rows of random offsets and movements, each used so often and successful once."""
+def rows(count: int, seed: int = 0) -> tuple[Affordance, ...]:
+    """Return rows of random offsets and movements, as they are learned."""
     rng = np.random.default_rng(seed)
     made = []
     for step, (x, y, dx, dy) in enumerate(rng.uniform(-4.0, 4.0, (count, 4)).tolist(), start=1):
@@ -42,7 +42,6 @@ def rows(count: int, seed: int = 0, used: int = 1) -> tuple[Affordance, ...]:
             Affordance(
                 *(step, BINDING, CALLS[step % len(CALLS)], observation(at, wrist)),
                 observation(Point(at.x + dx, at.y + dy), wrist),
-                times_used=used,
             )
         )
     return tuple(made)
