@@ -4,6 +4,7 @@ from affcli.core.behavior import GRASP, BehaviorCall
 from affcli.core.part import Part
 from affcli.core.setting import Setting
 from affcli.core.workspace import ToolGeometry
+from affcli.errors import BadInputError
 
 
 def grasp(
@@ -15,8 +16,16 @@ def grasp(
         geometry: where the paper's own grasp point is, for a call that names none.
         grasp_point: along the handle from its lower end (in).
         angle: by how much the tool is turned in the hand (degrees, counter-clockwise).
+
+    Raises:
+        BadInputError: the handle ends before the grasp point.
     """
     point = geometry.handle_below_grasp if grasp_point is None else grasp_point
+    end = geometry.handle_below_grasp + geometry.handle_length
+    if point > end:
+        raise BadInputError(
+            f"grasp: grasp_point = {point:g} lies beyond the end of the handle, at {end:g} in"
+        )
     return BehaviorCall.of(GRASP, {"grasp_point": point, **({"angle": angle} if angle else {})})
 
 

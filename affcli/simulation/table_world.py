@@ -7,7 +7,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from affcli.core.affordance import Affordance, replicates
-from affcli.core.behavior import BehaviorCall
+from affcli.core.behavior import BehaviorCall, BehaviorName
 from affcli.core.geometry import Pose
 from affcli.core.identity import stream_number
 from affcli.core.observation import Movement, SensorKind
@@ -105,15 +105,17 @@ class TableSetting:
 
     def snapshot(self) -> dict[str, Any]:
         """Return, as JSON types, all that is needed to go on from here."""
+        held = self.robot.holding
         return {
             "clock": self.robot.clock,
+            "holding": None if held is None else [held.name, dict(held.params)],
             "wrist": self.table.wrist,
             "attractor": self.table.attractor,
             "streams": {name: s.bit_generator.state for name, s in self.streams.items()},
         }
 
     def restore(self, snapshot: Mapping[str, Any]) -> None:
-        """Go on from a snapshot, the tool in the hand.
+        """Go on from a snapshot; one that does not say what was held has the tool in the hand.
 
         Raises:
             ValueError, KeyError, TypeError: it is none that `snapshot` gives.
@@ -122,11 +124,13 @@ class TableSetting:
         (clock,) = _numbers([snapshot["clock"]])
         for name in STREAMS:
             _check_stream(snapshot["streams"][name])
+        holding = _call(snapshot["holding"]) if "holding" in snapshot else self.binding
         self.robot.clock = clock
         self.table.wrist = Pose(*wrist)
         self.table.attractor = Pose(*attractor)
-        self.table.take(hold_of(self.binding))
-        self.robot.holding = self.binding
+        if holding is not None:
+            self.table.take(hold_of(holding))
+        self.robot.holding = holding
         for name, stream in self.streams.items():
             stream.bit_generator.state = snapshot["streams"][name]
 
@@ -267,6 +271,14 @@ class LostAffordances:
 def _word(name: str) -> int:
     """Return the word by which a goal or a start enters a stream's key: its number if it is one."""
     return int(name) if name.isdecimal() and len(name) < 10 else stream_number(name)
+
+
+def _call(value: Any) -> BehaviorCall | None:
+    """Return the behavior that a snapshot names; None for none."""
+    if value is None:
+        return None
+    name, params = value
+    return BehaviorCall.of(BehaviorName(str(name)), {k: float(v) for k, v in params.items()})
 
 
 def _numbers(value: Any) -> list[float]:

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import COLOR_TOLERANCE, AffordanceTable
 from affcli.core.geometry import Point
-from affcli.core.tool import PUCK_COLOR, TOOL_COLORS, Color, ToolName
+from affcli.core.tool import PUCK_COLOR, Color, ToolName
+from affcli.simulation.tools.paper import TOOL_COLORS
 from tests.factories import TOOL_COLOR, affordance, eighths, observation, places, table_of
 
 STICK_COLOR = TOOL_COLORS[ToolName("stick")]

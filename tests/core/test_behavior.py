@@ -2,18 +2,8 @@
 
 import pytest
 
-from affcli.core.behavior import (
-    CONTRACT_ARM,
-    GRASP,
-    OFFSET_DISTANCES,
-    POSITION_WRIST,
-    BehaviorCall,
-)
-
-
-def test_the_two_offset_distances_are_2_and_5_inches() -> None:
-    """§5: "Two different values for this parameter were used (2 and 5 inches)"."""
-    assert OFFSET_DISTANCES == (2.0, 5.0)
+from affcli.behaviors.moving import CONTRACT_ARM
+from affcli.core.behavior import GRASP, POSITION_WRIST, BehaviorCall
 
 
 def test_a_call_keeps_its_parameters_in_order_and_gives_them_by_name() -> None:

@@ -4,21 +4,21 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from affcli.core.affordance import Affordance
+from affcli.core.affordance import PROBABILITY_THRESHOLD, Affordance
 from affcli.core.behavior import Execution, ExecutionStatus
-from affcli.core.geometry import Point
-from affcli.core.trial import StepRecord, Survivors
+from affcli.core.geometry import Pose
+from affcli.core.trial import StepRecord
 from affcli.planning.nested_query import likely_to_succeed
 from tests.factories import EXTEND_5, affordance, moved_by, observation, table_of
 
 
 def step_with(row: Affordance, *, replicated: bool) -> StepRecord:
     """Return the record of a step that tried `row`."""
-    placing = Execution(EXTEND_5, ExecutionStatus.DONE, Point(0.0, 0.0), Point(0.0, 0.0), 1.0)
+    placing = Execution(EXTEND_5, ExecutionStatus.DONE, Pose(0.0, 0.0), Pose(0.0, 0.0), 1.0)
     return StepRecord(
         number=1,
         clock=1.0,
-        survivors=Survivors(1, 1, 1, 1),
+        reasons=(),
         row=row,
         placing=placing,
         execution=placing,
@@ -27,6 +27,8 @@ def step_with(row: Affordance, *, replicated: bool) -> StepRecord:
         expected=moved_by(0.0, 5.0),
         seen=moved_by(0.0, 0.0),
         replicated=replicated,
+        regrasped=False,
+        threshold=PROBABILITY_THRESHOLD,
     )
 
 

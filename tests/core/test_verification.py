@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from affcli.core.affordance import PROBABILITY_THRESHOLD
 from affcli.core.behavior import Execution, ExecutionStatus
-from affcli.core.geometry import Point
+from affcli.core.geometry import Pose
 from affcli.core.trial import Attempt
 from affcli.core.verification import (
     CHANGED,
@@ -27,11 +28,16 @@ ODDS = Fraction(99, 1)
 
 def attempt(*, replicated: bool, used: int = 1, successful: int = 1) -> Attempt:
     """Return a try of a row with these counters before it."""
-    done = Execution(EXTEND_5, ExecutionStatus.DONE, Point(0.0, 0.0), Point(0.0, 5.0), 1.0)
+    done = Execution(EXTEND_5, ExecutionStatus.DONE, Pose(0.0, 0.0), Pose(0.0, 5.0), 1.0)
     seen = moved_by(0.0, 5.0 if replicated else 0.0)
     row = affordance(used=used, successful=successful)
     start = observation()
-    return Attempt(row, done, done, start, start, moved_by(0.0, 5.0), seen, replicated)
+    return Attempt(
+        *(row, done, done, start, start, moved_by(0.0, 5.0), seen),
+        replicated=replicated,
+        regrasped=False,
+        threshold=PROBABILITY_THRESHOLD,
+    )
 
 
 def tries(outcomes: Sequence[bool]) -> list[Attempt]:

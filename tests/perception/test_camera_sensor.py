@@ -8,12 +8,12 @@ import pytest
 
 from affcli.core.affordance_table import COLOR_TOLERANCE
 from affcli.core.geometry import Point
-from affcli.core.task import goal_regions
-from affcli.core.tool import TOOL_COLORS, TOOL_PARTS
 from affcli.errors import BadInputError, NotSeenError
 from affcli.perception.camera_sensor import CameraSensor, power_up
 from affcli.perception.camera_settings import CameraSettings
-from tests.perception.views import WORKSPACE, default_eye, scene
+from affcli.simulation.tasks.extension_of_reach import goal_regions
+from affcli.simulation.tools.paper import TOOL_COLORS, TOOL_PARTS
+from tests.perception.views import COLORS, WORKSPACE, default_eye, scene
 
 
 def sensor(look: object, seed: int = 0) -> CameraSensor:
@@ -41,10 +41,10 @@ def test_the_noise_is_the_seeds() -> None:
     assert (again.observe(), again.observe()) == (first, second)
 
 
-def test_the_goal_is_seen_and_its_number_is_that_of_the_task() -> None:
-    goal = goal_regions(WORKSPACE.layout)[4]
+def test_the_goal_is_seen_and_its_name_is_that_of_the_task() -> None:
+    goal = goal_regions(WORKSPACE.layout)["4"]
     seen = sensor(scene(goal=goal)).observe_goal()
-    assert seen.number == 4
+    assert seen.name == "4"
     assert seen.center == pytest.approx(goal.center, abs=0.05)
     assert seen.half_width == pytest.approx(goal.half_width, abs=0.05)
 
@@ -96,7 +96,7 @@ def test_power_up_calibrates_the_camera_from_one_picture() -> None:
 def test_the_camera_may_stand_on_any_side(turn: float) -> None:
     x, y = {0.0: (0, -20), 90.0: (42, 22), 180.0: (0, 64), 270.0: (-42, 22)}[turn]
     settings = CameraSettings(x=float(x), y=float(y), height=90.0, turn_degrees=turn)
-    eye = power_up(settings, WORKSPACE, np.random.default_rng(0))
+    eye = power_up(settings, WORKSPACE, COLORS, np.random.default_rng(0))
     look = scene((6.0, 18.0), (-2.0, 9.0))
     eyes = CameraSensor(lambda: look, eye, np.random.default_rng(0))
     assert eyes.observe().object_position == pytest.approx((6.0, 18.0), abs=0.15)
@@ -117,7 +117,7 @@ def test_a_camera_that_cannot_serve_is_refused_at_power_up(
 ) -> None:
     settings = replace(CameraSettings(), **change)
     with pytest.raises(BadInputError, match=f"camera: .*({why})"):
-        power_up(settings, WORKSPACE, np.random.default_rng(0))
+        power_up(settings, WORKSPACE, COLORS, np.random.default_rng(0))
 
 
 def test_the_wrist_is_seen_where_the_encoders_have_it() -> None:

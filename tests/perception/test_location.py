@@ -5,16 +5,15 @@ import sys
 import numpy as np
 import pytest
 
-from affcli.config import Settings
 from affcli.core.geometry import Point
 from affcli.core.scene import Scene
-from affcli.core.task import GOAL_NUMBERS, START_NUMBERS, goal_regions, start_positions
-from affcli.core.tool import TOOL_PARTS
-from affcli.core.trial import LearningSpec
 from affcli.errors import NotSeenError
 from affcli.lab.learning_run import LearningRun
 from affcli.perception.camera import Array
 from affcli.perception.location import places_of
+from affcli.simulation.tasks.extension_of_reach import goal_regions, start_positions
+from affcli.simulation.tools.paper import TOOL_PARTS
+from tests.factories import learning_spec
 from tests.perception.views import SQUARE, WORKSPACE, default_eye, gap, scene
 
 CLEAR = 1.0
@@ -82,11 +81,11 @@ def test_a_puck_that_the_tool_hides_in_part() -> None:
     """Right after a push: the puck lies at the tool, which stands before its side."""
     looks = []
     for tool in TOOL_PARTS:
-        spec = LearningSpec(tool, 9, 0, None, 150, Settings().to_json())
+        spec = learning_spec(tool, seed=9, behaviors=150)
         run = LearningRun(spec)
         for _ in run.steps():
-            look = run.bench.world.scene
-            if gap(look) < 0.05:
+            look = run.setting.scene()
+            if look is not None and gap(look) < 0.05:
                 looks.append(look)
     _, most = said("touched by the tool", puck_errors(looks))
     assert most <= 0.15
@@ -108,7 +107,7 @@ def test_a_puck_under_the_bar_is_hidden_and_yet_found() -> None:
 
 def test_the_wrist() -> None:
     looks = random_looks(300, *SQUARE)
-    errors = [np.subtract(looked_at(look, k)[1], look.wrist) for k, look in enumerate(looks)]
+    errors = [np.subtract(looked_at(look, k)[1], look.wrist.point) for k, look in enumerate(looks)]
     _, most = said("wrist", np.array(errors))
     assert most <= 0.05
 
@@ -119,12 +118,12 @@ def test_the_goal_with_the_tool_across_it() -> None:
     home = WORKSPACE.wrist_start
     goals, starts = goal_regions(WORKSPACE.layout), start_positions(WORKSPACE.layout)
     for tool in TOOL_PARTS:
-        for number in GOAL_NUMBERS:
-            for start in START_NUMBERS:
-                look = scene(starts[start], home, tool, goals[number])
-                seen = eye.segmenter.segment(eye.renderer.take(look, np.random.default_rng(start)))
+        for goal in goals.values():
+            for seed, start in enumerate(starts.values(), start=1):
+                look = scene(start, home, tool, goal)
+                seen = eye.segmenter.segment(eye.renderer.take(look, np.random.default_rng(seed)))
                 center, half = eye.locator.goal(seen)
-                errors.append(np.subtract(center, goals[number].center))
+                errors.append(np.subtract(center, goal.center))
                 assert half == pytest.approx(WORKSPACE.layout.goal_half_width, abs=0.05)
     _, most = said("goal", np.array(errors))
     assert most <= 0.1
@@ -135,7 +134,7 @@ def test_a_goal_hidden_along_a_whole_edge_keeps_its_size(
     tool: str, wrist: tuple[float, float]
 ) -> None:
     """The bar lies over the goal's far edge, so half an inch of it cannot be seen."""
-    eye, goal = default_eye(), goal_regions(WORKSPACE.layout)[2]
+    eye, goal = default_eye(), goal_regions(WORKSPACE.layout)["2"]
     look = scene((9.0, 18.0), wrist, tool, goal)
     seen = eye.segmenter.segment(eye.renderer.take(look, np.random.default_rng(0)))
     center, half = eye.locator.goal(seen)

@@ -12,14 +12,15 @@ from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Observation
 from affcli.core.scene import Scene
 from affcli.core.task import GoalRegion
-from affcli.core.tool import PUCK_COLOR, Color, paper_tools
+from affcli.core.tool import PUCK_COLOR, Color
 from affcli.core.workspace import ToolGeometry
 from affcli.perception.noisy_sensor import NoisySensor, SensorSettings
+from affcli.simulation.tools.paper import paper_tools
 from tests.factories import observation, places, seeds
 
 STICK = next(iter(paper_tools(ToolGeometry()).values()))
 BROWN = Color((128.0, 100.0, 90.0))
-GOAL = GoalRegion(2, Point(1.5, 28.0), 2.25)
+GOAL = GoalRegion("2", Point(1.5, 28.0), 2.25)
 NOISE = SensorSettings(position_noise=0.25, color_noise=3.0)
 EXACT = SensorSettings(position_noise=0.0, color_noise=0.0)
 LOOKS = 20_000
@@ -27,7 +28,7 @@ LOOKS = 20_000
 
 def scene(
     attractor: Pose = Pose(3.0, 22.0, 0.7),
-    wrist: Point = Point(1.0, 12.0),
+    wrist: Pose = Pose(1.0, 12.0),
     attractor_color: Color = PUCK_COLOR,
     tool_color: Color = BROWN,
     goal: GoalRegion | None = GOAL,
@@ -64,7 +65,7 @@ def assert_gaussian(values: NDArray[np.float64], mean: float, deviation: float) 
 @given(places, places, seeds)
 def test_without_noise_the_observation_is_the_scene(at: Point, wrist: Point, seed: int) -> None:
     """§5.2: position of the object, position relative to the wrist, its colour, the tool's."""
-    look = scene(Pose(at.x, at.y, 1.0), wrist)
+    look = scene(Pose(at.x, at.y, 1.0), Pose(*wrist))
     eye = sensor(look, EXACT, seed)
     assert eye.observe() == observation(at, wrist=wrist, tool_color=look.tool.color)
     assert eye.observe_goal() == GOAL
@@ -119,7 +120,7 @@ def test_colours_stay_within_0_to_255(seed: int, noise: float) -> None:
 def test_the_goal_is_seen_with_noise_on_its_centre_and_its_size_as_painted() -> None:
     eye = sensor()
     goals = [eye.observe_goal() for _ in range(LOOKS)]
-    assert {(goal.number, goal.half_width) for goal in goals} == {(2, 2.25)}
+    assert {(goal.name, goal.half_width) for goal in goals} == {("2", 2.25)}
     centers = np.array([goal.center for goal in goals])
     assert_gaussian(centers[:, 0], GOAL.center.x, NOISE.position_noise)
     assert_gaussian(centers[:, 1], GOAL.center.y, NOISE.position_noise)

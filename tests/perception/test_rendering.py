@@ -7,11 +7,12 @@ import shapely
 from affcli.core.geometry import Point, Pose
 from affcli.core.scene import Scene
 from affcli.core.task import GoalRegion
-from affcli.core.tool import PUCK_COLOR, ToolName, paper_tools
+from affcli.core.tool import PUCK_COLOR, ToolName
 from affcli.perception.camera_settings import CameraSettings
 from affcli.perception.palette import GOAL_COLOR
 from affcli.perception.rendering import Picture, Renderer
 from affcli.perception.solids import circle
+from affcli.simulation.tools.paper import paper_tools
 from tests.perception.views import WORKSPACE, flat, scene
 
 PLAIN = CameraSettings(grey_noise=0.0, blur_px=0.0, uneven_light=0.0)
@@ -29,7 +30,7 @@ def pixels_of(picture: Picture, color: tuple[float, ...]) -> int:
 
 
 def test_the_same_seed_gives_the_same_picture() -> None:
-    look = scene(goal=GoalRegion(2, Point(0.0, 26.8), 2.25))
+    look = scene(goal=GoalRegion("2", Point(0.0, 26.8), 2.25))
     first = take(CameraSettings(), look, 3)
     assert first.shape == (480, 640, 3)
     assert first.dtype == np.uint8
@@ -40,7 +41,7 @@ def test_the_same_seed_gives_the_same_picture() -> None:
 def test_one_renderer_takes_any_number_of_pictures_alike() -> None:
     """What it keeps of one scene must not show in the next."""
     renderer = Renderer(CameraSettings(), WORKSPACE)
-    looks = [scene(), scene((-8.0, 25.0), goal=GoalRegion(1, Point(0.0, 15.3), 2.25)), scene()]
+    looks = [scene(), scene((-8.0, 25.0), goal=GoalRegion("1", Point(0.0, 15.3), 2.25)), scene()]
     taken = [renderer.take(look, np.random.default_rng(5)) for look in looks]
     assert np.array_equal(taken[0], taken[2])
     assert np.array_equal(taken[1], take(CameraSettings(), looks[1], 5))
@@ -69,7 +70,7 @@ def test_the_light_is_uneven_as_asked() -> None:
 
 
 def test_a_square_goal_covers_the_pixels_that_perspective_gives_it() -> None:
-    goal = GoalRegion(3, Point(-12.4, 22.4), 2.25)
+    goal = GoalRegion("3", Point(-12.4, 22.4), 2.25)
     picture = take(PLAIN, scene(goal=goal))
     half = goal.half_width
     corners = [
@@ -101,8 +102,8 @@ def test_what_is_nearer_to_the_camera_hides_what_is_behind(*, hidden: bool) -> N
     tool = paper_tools(WORKSPACE.tools)[ToolName("t-stick")]
     far_edge = 9.0 + WORKSPACE.tools.handle_length
     puck = Pose(3.0, far_edge - WORKSPACE.tools.part_width - 1.5 if hidden else far_edge + 1.5)
-    look = Scene(puck, PUCK_COLOR, Point(0.0, 9.0), tool, None)
-    alone = Scene(puck, PUCK_COLOR, Point(-15.0, 2.0), tool, None)
+    look = Scene(puck, PUCK_COLOR, Pose(0.0, 9.0), tool, None)
+    alone = Scene(puck, PUCK_COLOR, Pose(-15.0, 2.0), tool, None)
     side = tuple(0.7 * c for c in ORANGE)
     with_tool, without = (pixels_of(take(PLAIN, one), side) for one in (look, alone))
     assert (with_tool < 0.8 * without) == hidden
@@ -113,14 +114,14 @@ def test_what_is_nearer_to_the_camera_hides_what_is_behind(*, hidden: bool) -> N
 
 def test_a_lifted_tool_is_drawn_over_the_puck_and_elsewhere_in_the_picture() -> None:
     tool = paper_tools(WORKSPACE.tools)[ToolName("stick")]
-    over = Scene(Pose(0.0, 22.0), PUCK_COLOR, Point(0.0, 12.0), tool, None, lift=1.6)
-    away = Scene(Pose(0.0, 22.0), PUCK_COLOR, Point(9.0, 12.0), tool, None, lift=1.6)
+    over = Scene(Pose(0.0, 22.0), PUCK_COLOR, Pose(0.0, 12.0), tool, None, lift=1.6)
+    away = Scene(Pose(0.0, 22.0), PUCK_COLOR, Pose(9.0, 12.0), tool, None, lift=1.6)
     tops = [pixels_of(take(PLAIN, one), ORANGE) for one in (over, away)]
     assert tops[0] < 0.85 * tops[1]
-    down = Scene(Pose(0.0, 22.0), PUCK_COLOR, Point(9.0, 12.0), tool, None)
+    down = Scene(Pose(0.0, 22.0), PUCK_COLOR, Pose(9.0, 12.0), tool, None)
     assert not np.array_equal(take(PLAIN, away), take(PLAIN, down))
 
 
 def test_what_is_out_of_view_is_simply_not_there() -> None:
-    far = Scene(Pose(400.0, 300.0), PUCK_COLOR, Point(0.0, 12.0), scene().tool, None)
+    far = Scene(Pose(400.0, 300.0), PUCK_COLOR, Pose(0.0, 12.0), scene().tool, None)
     assert pixels_of(take(PLAIN, far), ORANGE) == 0

@@ -8,8 +8,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from affcli.core.task import goal_regions
-from affcli.core.tool import TOOL_PARTS, Color
+from affcli.core.tool import Color
 from affcli.core.workspace import TaskLayout
 from affcli.errors import BadInputError, NotSeenError
 from affcli.perception.camera_settings import CameraSettings
@@ -21,13 +20,15 @@ from affcli.perception.palette import (
     class_of_hue,
     hue_distance,
     palette,
-    paper_palette,
+    table_palette,
 )
 from affcli.perception.rendering import Picture, Renderer
 from affcli.perception.segmentation import NO_CLASS, Segmentation, Segmenter
-from tests.perception.views import WORKSPACE, scene
+from affcli.simulation.tasks.extension_of_reach import goal_regions
+from affcli.simulation.tools.paper import TOOL_PARTS
+from tests.perception.views import COLORS, WORKSPACE, scene
 
-CLASSES = paper_palette(WORKSPACE)
+CLASSES = table_palette(WORKSPACE, COLORS)
 SEGMENTER = Segmenter(CLASSES)
 PUCK = next(c for c in CLASSES if c.role is Role.OBJECT)
 components = st.floats(0.0, 255.0)
@@ -74,7 +75,7 @@ def test_a_colour_is_told_in_any_light(one: ColorClass, light: float) -> None:
 @pytest.mark.parametrize("tool", TOOL_PARTS)
 def test_each_thing_on_the_table_is_one_blob(tool: str, uneven: float) -> None:
     settings = CameraSettings(uneven_light=uneven)
-    look = scene((3.5, 20.0), (0.0, 10.0), tool, goal_regions(TaskLayout())[3])
+    look = scene((3.5, 20.0), (0.0, 10.0), tool, goal_regions(TaskLayout())["3"])
     seen = SEGMENTER.segment(Renderer(settings, WORKSPACE).take(look, np.random.default_rng(1)))
     for one in CLASSES:
         expected = int(one.role is not Role.TOOL or one.name == tool)

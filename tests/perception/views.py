@@ -9,14 +9,17 @@ from hypothesis import strategies as st
 from affcli.core.geometry import Point, Pose
 from affcli.core.scene import Scene
 from affcli.core.task import GoalRegion
-from affcli.core.tool import PUCK_COLOR, ToolName, paper_tools
+from affcli.core.tool import PUCK_COLOR, ToolName
 from affcli.core.workspace import Workspace
 from affcli.perception.camera import Array, Camera, ImageSensor, looking
 from affcli.perception.camera_sensor import Eye, power_up
 from affcli.perception.camera_settings import CameraSettings
 from affcli.perception.markers import Pattern
+from affcli.simulation.tools.paper import TOOL_COLORS, paper_tools
 
 WORKSPACE = Workspace()
+COLORS = {str(name): color for name, color in TOOL_COLORS.items()}
+"""The colour of each tool by its name."""
 SENSOR = ImageSensor()
 PATTERN = Pattern(origin=Point(-12.5, 9.2))
 """As it lies on the table at power-up, but for the side from which the camera looks."""
@@ -93,16 +96,16 @@ def scene(
 ) -> Scene:
     """Return a table with a puck and a tool on it."""
     held = paper_tools(WORKSPACE.tools)[ToolName(tool)]
-    return Scene(Pose(*puck), PUCK_COLOR, Point(*wrist), held, goal)
+    return Scene(Pose(*puck), PUCK_COLOR, Pose(*wrist), held, goal)
 
 
 @cache
 def default_eye() -> Eye:
     """Return the default camera after power-up."""
-    return power_up(CameraSettings(), WORKSPACE, np.random.default_rng(7))
+    return power_up(CameraSettings(), WORKSPACE, COLORS, np.random.default_rng(7))
 
 
 def gap(look: Scene) -> float:
     """Return how far the puck's rim is from the tool (in)."""
-    parts = [part.moved(*look.wrist) for part in look.tool.outlines]
+    parts = [part.placed(look.wrist) for part in look.tool.outlines]
     return min(p.distance(look.attractor.point) for p in parts) - WORKSPACE.puck.radius

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from affcli.core.geometry import ConvexPolygon, Point, Pose
-from affcli.core.tool import paper_tools
 from affcli.core.workspace import Workspace
 from affcli.simulation.contact import travel_to_contact
 from affcli.simulation.physics_settings import PhysicsSettings
 from affcli.simulation.pushing import PushSimulator
+from affcli.simulation.tools.paper import paper_tools
 from affcli.simulation.wrist_motion import Stretch, on_grid, trapezoid
 from tests.physics.quasi_static import Push
 

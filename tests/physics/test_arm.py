@@ -8,7 +8,6 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from affcli.core.geometry import Point
-from affcli.core.task import start_positions
 from affcli.core.workspace import ArmGeometry
 from affcli.errors import BadInputError
 from affcli.simulation.arm import (
@@ -18,6 +17,7 @@ from affcli.simulation.arm import (
     reach_at,
     wrist_position,
 )
+from affcli.simulation.tasks.extension_of_reach import start_positions
 from tests.physics.pushes import RADIUS, WORKSPACE
 
 ARM = WORKSPACE.arm

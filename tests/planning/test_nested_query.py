@@ -11,18 +11,21 @@ from hypothesis import strategies as st
 
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import COLOR_TOLERANCE, AffordanceTable, Rows
-from affcli.core.geometry import Point
+from affcli.core.choice import Choice
+from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Observation
-from affcli.core.tool import TOOL_COLORS, Color, ToolName
-from affcli.planning import nested_query
+from affcli.core.task import GoalRegion
+from affcli.core.tool import Color, ToolName
+from affcli.planning import selection
 from affcli.planning.nested_query import (
-    choose_row,
+    NestedQuery,
     consistent_with_colors,
     least_repositioning,
     likely_to_succeed,
     top_by_expected_distance,
     wrist_within_reach,
 )
+from affcli.simulation.tools.paper import TOOL_COLORS
 from tests.factories import (
     EIGHTH,
     TOOL_COLOR,
@@ -30,6 +33,7 @@ from tests.factories import (
     goal_at,
     observation,
     places,
+    situation,
     table_of,
 )
 from tests.fakes import FakeRobot, FakeTable, everywhere
@@ -89,7 +93,18 @@ def all_of(table: AffordanceTable) -> Rows:
 
 
 def robot_at(wrist: Point, reachable: Callable[[Point], bool] = everywhere) -> FakeRobot:
-    return FakeRobot(FakeTable(wrist=wrist), reachable=reachable)
+    return FakeRobot(FakeTable(wrist=Pose(*wrist)), reachable=reachable)
+
+
+def choose_row(
+    table: AffordanceTable, seen: Observation, goal: GoalRegion, robot: FakeRobot
+) -> Choice:
+    return NestedQuery().choose(situation(table, seen, goal, robot))
+
+
+def rows_left(choice: Choice) -> tuple[int | None, ...]:
+    """Return how many rows each search left."""
+    return tuple(reason.rows for reason in choice.reasons)
 
 
 @settings(deadline=None)
@@ -135,7 +150,7 @@ def test_only_rows_whose_wrist_position_is_in_reach_are_candidates(
 ) -> None:
     """The robot cannot use a row whose wrist position (attractor - O^s offset) it cannot take."""
     table = AffordanceTable(rows)
-    found = wrist_within_reach(table, all_of(table), seen_at(at), robot_at(at, reachable))
+    found = wrist_within_reach(table, all_of(table), seen_at(at), robot_at(at, reachable).reaches)
     expected = naive.with_wrist_in_reach(list(enumerate(rows)), seen_at(at), reachable)
     assert found.tolist() == places_of(expected)
 
@@ -184,8 +199,8 @@ def test_the_short_cut_for_long_tables_leaves_the_same_rows(
 ) -> None:
     """However the k-th smallest distance is found, also where a sample misleads, which a small
     one of few rows often does."""
-    monkeypatch.setattr(nested_query, "LONG", sample)
-    monkeypatch.setattr(nested_query, "SAMPLE", sample)
+    monkeypatch.setattr(selection, "LONG", sample)
+    monkeypatch.setattr(selection, "SAMPLE", sample)
     rng = np.random.default_rng(sample)
     for _ in range(200):
         n = int(rng.integers(sample, 70))
@@ -195,7 +210,7 @@ def test_the_short_cut_for_long_tables_leaves_the_same_rows(
 
 @pytest.mark.parametrize("order", ["as they come", "nearest first", "farthest first", "all alike"])
 def test_a_table_long_enough_for_the_short_cut_is_cut_like_any_other(order: str) -> None:
-    n = nested_query.LONG + 13
+    n = selection.LONG + 13
     sizes = np.random.default_rng(0).integers(0, 400, n) * EIGHTH
     if order != "as they come":
         sizes.sort()
@@ -238,7 +253,7 @@ def test_search_4_chooses_the_row_with_the_least_repositioning_of_the_tool(
     """§6.2: "choose one row which minimizes the re-positioning of the tool relative to its current
     location": the way from the wrist to (attractor - O^s offset). Ties go to the older row."""
     table = AffordanceTable(rows)
-    chosen = least_repositioning(table, all_of(table), seen_at(at), wrist)
+    chosen = least_repositioning(table, all_of(table), seen_at(at), Pose(*wrist))
     expected = naive.least_moved(list(enumerate(rows)), seen_at(at), wrist)
     assert chosen == (None if expected is None else expected[0])
 
@@ -260,7 +275,9 @@ def test_each_search_sees_only_the_rows_that_the_searches_before_it_left(
     found = top_by_expected_distance(table, left, seen, goal)
     assert found.tolist() == (places_of(naive.top_fifth(ranked)) if few else [])
     best = naive.least_moved(few, seen, wrist)
-    assert least_repositioning(table, left, seen, wrist) == (None if best is None else best[0])
+    assert least_repositioning(table, left, seen, Pose(*wrist)) == (
+        None if best is None else best[0]
+    )
 
 
 @settings(deadline=None)
@@ -286,10 +303,10 @@ def test_the_searches_are_performed_in_the_order_of_the_paper(
     left = naive.top_fifth(ranked) if ranked else []
     counted.append(len(left))
     best = naive.least_moved(left, seen, wrist)
-    assert choice.survivors == tuple(counted)
+    assert rows_left(choice) == tuple(counted)
     assert choice.position == (None if best is None else best[0])
-    assert list(choice.survivors) == sorted(choice.survivors, reverse=True)
-    assert (choice.position is None) is (choice.survivors.nearest == 0)
+    assert counted == sorted(counted, reverse=True)
+    assert (choice.position is None) is (counted[-1] == 0)
 
 
 @settings(deadline=None)
@@ -311,7 +328,7 @@ def test_rows_that_cannot_be_used_change_nothing(
     alone = choose_row(AffordanceTable(rows), seen, goal_at(*goal), robot)
     beside = choose_row(AffordanceTable([*rows, *added]), seen, goal_at(*goal), robot)
     assert beside.position == alone.position
-    assert beside.survivors[2:] == alone.survivors[2:]
+    assert beside.reasons[2:] == alone.reasons[2:]
 
 
 @settings(deadline=None)
@@ -340,7 +357,7 @@ def test_the_reach_is_asked_before_the_sort() -> None:
     robot = robot_at(Point(0.0, 16.0), lambda p: p.x > -1.0)
     choice = choose_row(table_of(*promising, *lesser), seen, goal_at(0.0, 29.0), robot)
     assert choice.position == 8
-    assert choice.survivors == (10, 10, 2, 1)
+    assert rows_left(choice) == (10, 10, 2, 1)
 
 
 def test_repositioning_counts_only_within_the_top_fifth() -> None:
@@ -355,4 +372,4 @@ def test_repositioning_counts_only_within_the_top_fifth() -> None:
 def test_a_blank_table_gives_no_row() -> None:
     choice = choose_row(AffordanceTable(), observation(), goal_at(0.0, 0.0), robot_at(Point(0, 0)))
     assert choice.position is None
-    assert choice.survivors == (0, 0, 0, 0)
+    assert rows_left(choice) == (0, 0, 0, 0)

@@ -5,8 +5,9 @@ import math
 from hypothesis import given
 from hypothesis import strategies as st
 
+from affcli.behaviors.moving import CONTRACT_ARM, EXTEND_ARM
 from affcli.core.affordance import Affordance
-from affcli.core.behavior import CONTRACT_ARM, EXTEND_ARM, BehaviorCall
+from affcli.core.behavior import BehaviorCall
 from affcli.core.geometry import Point
 from affcli.core.observation import Movement
 from affcli.planning.prediction import NO_MOVEMENT, RADIUS, TablePredictor

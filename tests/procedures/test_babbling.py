@@ -10,13 +10,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from affcli.behaviors.registry import paper_behaviors
+from affcli.behaviors.moving import paper_repertoire
 from affcli.core.affordance import Affordance
+from affcli.core.babbling_box import BabblingSettings
 from affcli.core.behavior import GRASP, POSITION_WRIST, ExecutionStatus
 from affcli.core.geometry import Point
 from affcli.core.trial import BabblingRecord
-from affcli.core.workspace import Workspace
-from affcli.procedures.babbling import BabblingSettings, BabblingState, babble
+from affcli.exploration.random_babbling import RandomBabbling
+from affcli.procedures.babbling import BabblingState, babble
 from tests.factories import BINDING, EIGHTH, observation, places
 from tests.fakes import (
     FakeExperimenter,
@@ -28,8 +29,7 @@ from tests.fakes import (
     scripted,
 )
 
-WORKSPACE = Workspace()
-CALLS = paper_behaviors(WORKSPACE.arm, WORKSPACE.motion, WORKSPACE.tools).exploratory
+CALLS = tuple(behavior.call for behavior in paper_repertoire())
 MANY_DRAWS = BabblingSettings()
 BOX = replace(MANY_DRAWS, draws=4)
 """The box of the product; where every place is in reach, four draws are plenty."""
@@ -51,12 +51,10 @@ def babbling(
     """Return the records of the first behaviors of a robot that babbles on a fake table."""
     robot = robot or FakeRobot(FakeTable())
     experimenter = experimenter or FakeExperimenter(robot.table)
-    rng = np.random.default_rng(seed)
+    explorer = RandomBabbling(CALLS, box, np.random.default_rng(seed))
     state = state or BabblingState()
     sensor = FakeSensor(robot.table)
-    return list(
-        islice(babble(robot, sensor, experimenter, BINDING, CALLS, box, rng, state), behaviors)
-    )
+    return list(islice(babble(robot, sensor, experimenter, BINDING, explorer, state), behaviors))
 
 
 def choices(records: list[BabblingRecord]) -> list[object]:
@@ -96,6 +94,8 @@ def test_a_row_holds_what_was_done_and_seen_with_both_counters_1(seed: int) -> N
             truncated=False,
             times_used=1,
             times_successful=1,
+            wrist_angle=record.execution.wrist_start.angle,
+            travel=Point(0.0, 0.0),
         )
 
 
@@ -293,9 +293,7 @@ def test_babbling_has_no_end_of_its_own() -> None:
         FakeSensor(table),
         FakeExperimenter(table, lost=nowhere, places=(Point(0.0, k) for k in count())),
         BINDING,
-        CALLS,
-        BOX,
-        rng,
+        RandomBabbling(CALLS, BOX, rng),
         BabblingState(),
     )
     last = next(islice(records, 2999, None))

@@ -13,10 +13,12 @@ from affcli.core.behavior import POSITION_WRIST, BehaviorCall, ExecutionStatus
 from affcli.core.geometry import Point
 from affcli.core.observation import movement
 from affcli.core.task import GoalRegion
-from affcli.core.tool import TOOL_COLORS, ToolName
+from affcli.core.tool import ToolName
 from affcli.core.trial import Outcome, StepRecord, TrialEnd
 from affcli.errors import SimulationDivergedError
+from affcli.planning.nested_query import NestedQuery
 from affcli.procedures.extension_of_reach import TrialLimits, extension_of_reach
+from affcli.simulation.tools.paper import TOOL_COLORS
 from tests.factories import BINDING, EIGHTH, affordance, goal_at, table_of
 from tests.fakes import (
     CALL_SECONDS,
@@ -59,7 +61,8 @@ class Trial:
     def _run(self, experimenter: FakeExperimenter) -> TrialEnd:
         limits = TrialLimits(max_steps=self.max_steps)
         running = extension_of_reach(
-            self.robot, self.sensor, experimenter, self.table, BINDING, limits
+            *(self.robot, self.sensor, experimenter, self.table, BINDING, limits),
+            planner=NestedQuery(),
         )
         while True:
             try:
@@ -72,6 +75,11 @@ class Trial:
     def behaviors(self) -> list[BehaviorCall]:
         """The exploratory behaviors executed."""
         return [c for c in self.robot.calls[1:] if c.name != POSITION_WRIST]
+
+
+def rows_left(end: TrialEnd) -> tuple[int | None, ...]:
+    """Return how many rows each search left, at the query that found none."""
+    return tuple(reason.rows for reason in end.last_reasons or ())
 
 
 def diverging_after(behaviors: int) -> Effect:
@@ -127,13 +135,13 @@ def test_without_a_row_the_trial_ends_and_says_which_search_left_none(
     trial = Trial(table_of(row), reachable=reachable)
     assert trial.end.outcome is Outcome.NO_ROW
     assert trial.end.steps == 0
-    assert trial.end.last_survivors == survivors
+    assert rows_left(trial.end) == survivors
     assert trial.robot.calls == [BINDING]
 
 
 def test_a_blank_table_solves_nothing() -> None:
     trial = Trial(AffordanceTable())
-    assert (trial.end.outcome, trial.end.last_survivors) == (Outcome.NO_ROW, (0, 0, 0, 0))
+    assert (trial.end.outcome, rows_left(trial.end)) == (Outcome.NO_ROW, (0, 0, 0, 0))
 
 
 def test_an_attractor_out_of_the_tools_reach_ends_the_trial() -> None:
@@ -142,7 +150,7 @@ def test_an_attractor_out_of_the_tools_reach_ends_the_trial() -> None:
     trial = Trial(table_of(AHEAD_5), effect=lambda call: (0.0, 5.0), lost=lambda p: p.y > 30.0)
     assert trial.end.outcome is Outcome.ATTRACTOR_OUT_OF_REACH
     assert trial.end.steps == len(trial.steps) == 2
-    assert trial.end.last_survivors is None
+    assert trial.end.last_reasons is None
     assert len(trial.behaviors) == 2
 
 
@@ -172,7 +180,7 @@ def test_a_blocked_placing_counts_as_a_failed_replication_and_runs_no_behavior()
     assert trial.behaviors == []
     assert (table.row(0).times_used, table.row(0).times_successful) == (2, 1)
     assert trial.end.outcome is Outcome.NO_ROW
-    assert trial.end.last_survivors == (1, 0, 0, 0)
+    assert rows_left(trial.end) == (1, 0, 0, 0)
 
 
 def test_a_puck_that_does_not_move_is_a_failure_that_kills_a_fresh_row() -> None:
@@ -318,7 +326,7 @@ def test_the_end_of_a_trial_says_how_far_it_came(drawn: tuple[list[Affordance], 
     assert trial.end.outcome is not Outcome.INVALID
     clocks = [step.clock for step in trial.steps]
     assert clocks == sorted(set(clocks))
-    assert (trial.end.last_survivors is None) is (trial.end.outcome is not Outcome.NO_ROW)
+    assert (trial.end.last_reasons is None) is (trial.end.outcome is not Outcome.NO_ROW)
 
 
 def test_the_tool_is_grasped_once_before_the_first_look() -> None:

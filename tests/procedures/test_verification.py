@@ -9,16 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from affcli.behaviors.moving import CONTRACT_ARM, EXTEND_ARM, SLIDE_ARM_LEFT
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import AffordanceTable
-from affcli.core.behavior import (
-    CONTRACT_ARM,
-    EXTEND_ARM,
-    POSITION_WRIST,
-    SLIDE_ARM_LEFT,
-    BehaviorCall,
-    ExecutionStatus,
-)
+from affcli.core.behavior import POSITION_WRIST, BehaviorCall, ExecutionStatus
 from affcli.core.geometry import Point
 from affcli.core.verification import ReplicationRecord
 from affcli.errors import BadInputError

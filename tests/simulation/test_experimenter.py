@@ -12,13 +12,13 @@ from hypothesis import strategies as st
 from affcli.config import Settings, settings_with
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.geometry import Point, Pose
-from affcli.core.tool import TOOL_PARTS
 from affcli.errors import BadInputError
-from affcli.lab.bench import Bench, tool_named
 from affcli.simulation import experimenter
 from affcli.simulation.arm import reach_at
+from affcli.simulation.table_world import TableSetting
+from affcli.simulation.tools.paper import TOOL_PARTS
 from affcli.simulation.wrist_motion import GRID
-from tests.factories import bench_with, goal_at
+from tests.factories import goal_at, setting_with, tool_named
 
 SETTINGS = Settings()
 WORKSPACE = SETTINGS.workspace
@@ -28,24 +28,24 @@ tools = st.sampled_from(sorted(TOOL_PARTS))
 some_seeds = st.integers(0, 2**32)
 
 
-def learning(tool: str, seed: int) -> Bench:
-    """Return a bench laid out for learning."""
-    bench = bench_with("stick", seed)
-    bench.world.goal = goal_at(0.0, 15.0)
-    bench.experimenter.lay_out_learning(tool_named(SETTINGS, tool))
-    return bench
+def learning(tool: str, seed: int) -> TableSetting:
+    """Return a setting laid out for learning."""
+    setting = setting_with("stick", seed)
+    setting.table.goal = goal_at(0.0, 15.0)
+    setting.experimenter.lay_out_learning(tool_named(tool))
+    return setting
 
 
-def assert_attractor_can_be_played_with(bench: Bench) -> None:
+def assert_attractor_can_be_played_with(setting: TableSetting) -> None:
     """Check that the attractor lies on the table, in the tool's reach, and clear of the tool."""
-    world = bench.world
-    at = world.attractor
+    table = setting.table
+    at = table.attractor
     assert abs(at.x) <= TABLE.half_width
     assert TABLE.near <= at.y <= TABLE.far
-    assert not bench.experimenter.attractor_out_of_reach()
+    assert not setting.experimenter.attractor_out_of_reach()
     wrists = wrists_on_a_fine_grid()
-    shape = shapely.union_all([shapely.Polygon(p.vertices) for p in world.tool.outlines])
-    beside = shapely.Point(at.x - world.wrist.x, at.y - world.wrist.y)
+    shape = shapely.union_all([shapely.Polygon(p.vertices) for p in table.tool.outlines])
+    beside = shapely.Point(at.x - table.wrist.x, at.y - table.wrist.y)
     assert shape.distance(beside) >= RADIUS - 1e-9
     offsets = shapely.points(at.x - wrists[:, 0], at.y - wrists[:, 1])
     assert float(shapely.distance(shape, offsets).min()) < RADIUS
@@ -66,15 +66,15 @@ def test_a_learning_run_begins_with_tool_and_attractor_at_random_places(
     tool: str, seed: int
 ) -> None:
     """§6: "The initial positions of the attractor and the tool were random." No goal yet."""
-    bench = learning(tool, seed)
-    world = bench.world
-    assert world.tool.name == tool
-    assert world.goal is None
-    radius = math.hypot(*world.wrist)
+    setting = learning(tool, seed)
+    table = setting.table
+    assert table.tool.name == tool
+    assert table.goal is None
+    radius = math.hypot(*table.wrist.point)
     assert REACH.inner - GRID <= radius <= REACH.outer + GRID
-    assert abs(math.atan2(-world.wrist.x, world.wrist.y)) <= REACH.waist_max + 1e-6
-    assert all((c / GRID).is_integer() for c in world.wrist)
-    assert_attractor_can_be_played_with(bench)
+    assert abs(math.atan2(-table.wrist.x, table.wrist.y)) <= REACH.waist_max + 1e-6
+    assert all((c / GRID).is_integer() for c in table.wrist)
+    assert_attractor_can_be_played_with(setting)
 
 
 @settings(deadline=None, max_examples=30)
@@ -83,19 +83,19 @@ def test_the_attractor_is_put_back_on_the_table_within_reach_and_off_the_tool(
     tool: str, seed: int
 ) -> None:
     """§6: "manually placed in a new random position", where the robot can go on learning."""
-    bench = bench_with(tool, seed)
-    bench.world.attractor = Pose(0.0, 2.0 * TABLE.far)
-    wrist = bench.world.wrist
-    assert bench.experimenter.attractor_out_of_reach()
-    bench.experimenter.put_attractor_back()
-    assert bench.world.wrist == wrist
-    assert_attractor_can_be_played_with(bench)
+    setting = setting_with(tool, seed)
+    setting.table.attractor = Pose(0.0, 2.0 * TABLE.far)
+    wrist = setting.table.wrist
+    assert setting.experimenter.attractor_out_of_reach()
+    setting.experimenter.put_attractor_back()
+    assert setting.table.wrist == wrist
+    assert_attractor_can_be_played_with(setting)
 
 
 def test_the_tools_first_places_are_spread_evenly_over_the_reach() -> None:
     """Uniform over the ring: the squares of the radii and the bearings are uniform."""
     n = 400
-    wrists = [learning("stick", seed).world.wrist for seed in range(n)]
+    wrists = [learning("stick", seed).table.wrist for seed in range(n)]
     spread = REACH.outer**2 - REACH.inner**2
     areas = sorted((w.x**2 + w.y**2 - REACH.inner**2) / spread for w in wrists)
     bearings = sorted((math.atan2(w.x, w.y) / REACH.waist_max + 1.0) / 2.0 for w in wrists)
@@ -104,11 +104,11 @@ def test_the_tools_first_places_are_spread_evenly_over_the_reach() -> None:
 
 
 def test_the_attractor_is_put_everywhere_within_reach_left_and_right_near_and_far() -> None:
-    bench = bench_with("t-hook", 5)
+    setting = setting_with("t-hook", 5)
     places = []
     for _ in range(300):
-        bench.experimenter.put_attractor_back()
-        places.append(bench.world.attractor)
+        setting.experimenter.put_attractor_back()
+        places.append(setting.table.attractor)
     assert len(set(places)) == len(places)
     left = sum(place.x < 0.0 for place in places)
     assert 100 < left < 200
@@ -117,9 +117,9 @@ def test_the_attractor_is_put_everywhere_within_reach_left_and_right_near_and_fa
 
 
 def test_the_same_seed_lays_out_the_same_and_another_seed_something_else() -> None:
-    def laid_out(seed: int) -> tuple[Point, Pose]:
-        world = learning("t-hook", seed).world
-        return world.wrist, world.attractor
+    def laid_out(seed: int) -> tuple[Pose, Pose]:
+        table = learning("t-hook", seed).table
+        return table.wrist, table.attractor
 
     assert laid_out(3) == laid_out(3)
     assert len({laid_out(seed) for seed in range(30)}) == 30
@@ -127,27 +127,27 @@ def test_the_same_seed_lays_out_the_same_and_another_seed_something_else() -> No
 
 def test_a_trial_begins_with_the_tool_at_the_tables_centre_and_the_attractor_at_its_start() -> None:
     """§7.1: "The tool was always placed in the center of the table"."""
-    bench = learning("stick", 0)
+    setting = learning("stick", 0)
     goal = goal_at(0.0, 15.0)
-    bench.experimenter.lay_out_trial(tool_named(SETTINGS, "l-hook"), Point(-3.0, 25.0), goal)
-    world = bench.world
-    assert world.tool == tool_named(SETTINGS, "l-hook")
-    assert world.wrist == world.home
-    assert world.attractor == Pose(-3.0, 25.0, 0.0)
-    assert world.goal == goal
+    setting.experimenter.lay_out_trial(tool_named("l-hook"), Point(-3.0, 25.0), goal)
+    table = setting.table
+    assert table.tool == tool_named("l-hook")
+    assert table.wrist == table.home
+    assert table.attractor == Pose(-3.0, 25.0, 0.0)
+    assert table.goal == goal
 
 
 @pytest.mark.parametrize("tool", sorted(TOOL_PARTS))
 def test_an_attractor_pushed_over_the_edge_of_the_table_is_out_of_reach(tool: str) -> None:
-    bench = bench_with(tool)
+    setting = setting_with(tool)
     for x, y in (
         (math.nextafter(TABLE.half_width, 99.0), 0.5 * (TABLE.near + TABLE.far)),
         (-TABLE.half_width - 0.1, 0.5 * (TABLE.near + TABLE.far)),
         (0.0, TABLE.near - 0.1),
         (0.0, TABLE.far + 0.1),
     ):
-        bench.world.attractor = Pose(x, y)
-        assert bench.experimenter.attractor_out_of_reach()
+        setting.table.attractor = Pose(x, y)
+        assert setting.experimenter.attractor_out_of_reach()
 
 
 @settings(deadline=None)
@@ -157,15 +157,15 @@ def test_the_attractor_is_out_of_reach_where_no_wrist_position_lets_the_tool_mov
 ) -> None:
     """§6: "out of tool reach": no wrist position from which the tool touches it, and by more than
     T detects. The exact gap is that between the attractor less the tool, and the ring of wrists."""
-    bench = bench_with(tool)
+    setting = setting_with(tool)
     x, y = across * TABLE.half_width, TABLE.near + away * (TABLE.far - TABLE.near)
-    bench.world.attractor = Pose(x, y)
-    shape = shapely.union_all([shapely.Polygon(p.vertices) for p in bench.world.tool.outlines])
+    setting.table.attractor = Pose(x, y)
+    shape = shapely.union_all([shapely.Polygon(p.vertices) for p in setting.table.tool.outlines])
     turned = shapely.affinity.rotate(shape, 180.0, origin=(0.0, 0.0))
     wrists = shapely.affinity.translate(turned, x, y)
     gap = wrists.distance(ring()) - (RADIUS - MOVEMENT_THRESHOLD)
     if abs(gap) > 0.05:
-        assert bench.experimenter.attractor_out_of_reach() is (gap > 0.0)
+        assert setting.experimenter.attractor_out_of_reach() is (gap > 0.0)
 
 
 def ring() -> shapely.Polygon:
@@ -183,9 +183,9 @@ def test_a_bigger_tool_reaches_what_a_smaller_one_of_its_parts_reaches() -> None
     ):
         lost = {}
         for tool in TOOL_PARTS:
-            bench = bench_with(tool)
-            bench.world.attractor = Pose(x, y)
-            lost[str(tool)] = bench.experimenter.attractor_out_of_reach()
+            setting = setting_with(tool)
+            setting.table.attractor = Pose(x, y)
+            lost[str(tool)] = setting.experimenter.attractor_out_of_reach()
         chain = ("stick", "l-stick", "l-hook", "t-hook")
         assert [lost[t] for t in chain] == sorted((lost[t] for t in chain), reverse=True)
 
@@ -195,7 +195,7 @@ def test_a_table_on_which_nothing_is_in_reach_is_bad_input_that_names_the_table(
 ) -> None:
     monkeypatch.setattr(experimenter, "PLACEMENTS", 20)
     nowhere_near = settings_with({"table": {"near": 500.0, "far": 600.0}}, "a file")
-    bench = bench_with("stick", settings=nowhere_near)
+    setting = setting_with("stick", settings=nowhere_near)
     with pytest.raises(BadInputError, match=r"stick in 20 tries; bring table\.near") as told:
-        bench.experimenter.put_attractor_back()
+        setting.experimenter.put_attractor_back()
     assert "\n" not in str(told.value)

@@ -13,13 +13,13 @@ from affcli.config import Settings
 from affcli.core.affordance import Affordance
 from affcli.core.behavior import BehaviorCall, ExecutionStatus
 from affcli.core.geometry import Point, Pose
-from affcli.core.tool import TOOL_PARTS
 from affcli.errors import BadInputError
-from affcli.lab.bench import Bench, tool_named
+from affcli.lab.learning_run import LearningRun
 from affcli.simulation import experimenter
 from affcli.simulation.arm import reach_at
-from tests.factories import affordance, bench_with
-from tests.lab.quick import EXACT, learned, spec_of
+from affcli.simulation.table_world import TableSetting
+from affcli.simulation.tools.paper import TOOL_PARTS
+from tests.factories import EXACT, affordance, learning_spec, rows_learned, setting_with, tool_named
 
 WORKSPACE = Settings().workspace
 TABLE, ARM, RADIUS = WORKSPACE.table, WORKSPACE.arm, WORKSPACE.puck.radius
@@ -34,23 +34,22 @@ some_seeds = st.integers(0, 2**32)
 def rows_of(tool: str, *, truncated: bool) -> tuple[Affordance, ...]:
     """Return rows learned without noise, those that met the edge of the reach or those that did
     not."""
-    steps = learned(spec_of(tool, 400, settings=EXACT))
-    rows = [r.affordance for r, _ in steps if r.affordance is not None]
+    rows = rows_learned(tool, settings=EXACT)
     found = tuple(row for row in rows if row.truncated is truncated)
     assert found
     return found
 
 
-def put_for(row: Affordance, tool: str, seed: int) -> Bench:
+def put_for(row: Affordance, tool: str, seed: int) -> TableSetting:
     """Return a table on which the attractor was put for a row."""
-    bench = bench_with(tool, seed)
-    bench.experimenter.put_attractor_for(row)
-    return bench
+    setting = setting_with(tool, seed)
+    setting.experimenter.put_attractor_for(row)
+    return setting
 
 
-def wrist_of(row: Affordance, bench: Bench) -> Point:
+def wrist_of(row: Affordance, setting: TableSetting) -> Point:
     """Return where the row's O^s asks the wrist to be."""
-    at, offset = bench.world.attractor, row.start.wrist_to_object
+    at, offset = setting.table.attractor, row.start.wrist_to_object
     return Point(at.x - offset.x, at.y - offset.y)
 
 
@@ -70,15 +69,15 @@ def test_the_rows_start_can_be_set_up_and_its_behavior_goes_as_far_as_it_did(
 ) -> None:
     """Also of a row that met the edge of the reach: as far before the edge, and it meets it."""
     row = data.draw(st.sampled_from(rows_of(tool, truncated=truncated)))
-    bench = put_for(row, tool, seed)
-    at, wrist = bench.world.attractor, wrist_of(row, bench)
+    setting = put_for(row, tool, seed)
+    at, wrist = setting.table.attractor, wrist_of(row, setting)
     assert abs(at.x) <= TABLE.half_width
     assert TABLE.near <= at.y <= TABLE.far
     assert LOW.holds(wrist)
     assert HIGH.holds(wrist)
-    bench.world.wrist = wrist
-    done = bench.robot.execute(row.exploratory, None)
-    assert math.dist(done.wrist_start, done.wrist_end) == pytest.approx(
+    setting.table.wrist = Pose(*wrist)
+    done = setting.robot.execute(row.exploratory, None)
+    assert math.dist(done.wrist_start.point, done.wrist_end.point) == pytest.approx(
         distance_gone(row), abs=HAIR
     )
     expected = ExecutionStatus.TRUNCATED if truncated else ExecutionStatus.DONE
@@ -92,13 +91,13 @@ def test_the_tool_lies_beside_the_attractor_wherever_it_was(
 ) -> None:
     """Where the tool is in the way it is put aside, within the reach."""
     row = data.draw(st.sampled_from(rows_of(tool, truncated=truncated)))
-    bench = put_for(row, tool, seed)
-    at = bench.world.attractor
+    setting = put_for(row, tool, seed)
+    at = setting.table.attractor
     # Once more, with the tool right on it: the place of the same stream is another, so try on.
-    bench.world.wrist = Point(at.x, at.y - 10.0)
-    bench.experimenter.put_attractor_for(row)
-    at, wrist = bench.world.attractor, bench.world.wrist
-    shape = shapely.union_all([shapely.Polygon(p.vertices) for p in bench.world.tool.outlines])
+    setting.table.wrist = Pose(at.x, at.y - 10.0)
+    setting.experimenter.put_attractor_for(row)
+    at, wrist = setting.table.attractor, setting.table.wrist
+    shape = shapely.union_all([shapely.Polygon(p.vertices) for p in setting.table.tool.outlines])
     assert shape.distance(shapely.Point(at.x - wrist.x, at.y - wrist.y)) >= RADIUS - 1e-9
 
 
@@ -106,15 +105,15 @@ def test_a_tool_in_the_way_is_put_aside_and_one_beside_stays() -> None:
     row = rows_of("t-hook", truncated=False)[0]
     moved = stayed = 0
     for seed in range(40):
-        bench = bench_with("t-hook", seed)
-        before = bench.world.wrist
-        bench.experimenter.put_attractor_for(row)
-        if bench.world.wrist == before:
+        setting = setting_with("t-hook", seed)
+        before = setting.table.wrist
+        setting.experimenter.put_attractor_for(row)
+        if setting.table.wrist == before:
             stayed += 1
         else:
             moved += 1
-            twin = bench_with("t-hook", seed).world
-            twin.attractor = bench.world.attractor
+            twin = setting_with("t-hook", seed).table
+            twin.attractor = setting.table.attractor
             assert not twin.clear_of_attractor(before)
     assert moved > 0
     assert stayed > 0
@@ -123,11 +122,11 @@ def test_a_tool_in_the_way_is_put_aside_and_one_beside_stays() -> None:
 @pytest.mark.parametrize("truncated", [False, True])
 def test_places_and_angles_are_fresh_every_time(truncated: bool) -> None:
     for row in rows_of("t-hook", truncated=truncated)[:5]:
-        bench = bench_with("t-hook", 3)
+        setting = setting_with("t-hook", 3)
         places = []
         for _ in range(60):
-            bench.experimenter.put_attractor_for(row)
-            places.append(bench.world.attractor)
+            setting.experimenter.put_attractor_for(row)
+            places.append(setting.table.attractor)
         assert len({(p.x, p.y) for p in places}) == 60
         # Along an edge that is nearly straight across there may be little room; some there is.
         spread = max(math.dist(p[:2], q[:2]) for p in places for q in places)
@@ -138,8 +137,8 @@ def test_places_and_angles_are_fresh_every_time(truncated: bool) -> None:
 
 def test_the_same_seed_puts_it_at_the_same_place() -> None:
     row = rows_of("stick", truncated=False)[0]
-    assert put_for(row, "stick", 8).world.attractor == put_for(row, "stick", 8).world.attractor
-    assert put_for(row, "stick", 8).world.attractor != put_for(row, "stick", 9).world.attractor
+    assert put_for(row, "stick", 8).table.attractor == put_for(row, "stick", 8).table.attractor
+    assert put_for(row, "stick", 8).table.attractor != put_for(row, "stick", 9).table.attractor
 
 
 @pytest.mark.parametrize("truncated", [False, True])
@@ -148,10 +147,10 @@ def test_where_chance_finds_no_place_it_is_the_rows_own(
 ) -> None:
     monkeypatch.setattr(experimenter, "PLACEMENTS", 0)
     row = rows_of("t-hook", truncated=truncated)[0]
-    bench = bench_with("t-hook", 1)
+    setting = setting_with("t-hook", 1)
     with pytest.raises(BadInputError, match="the t-hook has no place beside the attractor"):
-        bench.experimenter.put_attractor_for(row)
-    at = bench.world.attractor
+        setting.experimenter.put_attractor_for(row)
+    at = setting.table.attractor
     assert (at.x, at.y) == pytest.approx(row.start.object_position)
 
 
@@ -170,28 +169,28 @@ def test_a_row_that_cannot_be_done_anywhere_is_bad_input_that_names_it(
 
 
 def test_a_verification_begins_with_the_tool_at_the_tables_centre_and_no_goal() -> None:
-    bench = bench_with("stick", 0)
-    held = tool_named(Settings(), "l-hook")
-    bench.experimenter.lay_out_verification(held)
-    world = bench.world
-    assert (world.tool, world.goal, world.wrist) == (held, None, world.home)
+    setting = setting_with("stick", 0)
+    held = tool_named("l-hook")
+    setting.experimenter.lay_out_verification(held)
+    table = setting.table
+    assert (table.tool, table.goal, table.wrist) == (held, None, table.home)
 
 
 def test_a_row_made_where_it_was_made_replicates_to_the_bit() -> None:
     """The row's own place, wrist and angle, without noise: the very same push."""
-    steps = learned(spec_of("t-hook", 400, settings=EXACT))
-    bench = bench_with("t-hook", settings=EXACT)
+    steps = LearningRun(learning_spec(behaviors=400, settings=EXACT)).steps()
+    setting = setting_with("t-hook", settings=EXACT)
     for record, truth in steps:
-        if record.affordance is None:
+        if record.affordance is None or truth is None:
             continue
         row, offset = record.affordance, record.affordance.start.wrist_to_object
-        bench.world.attractor = Pose(*truth.start)
-        bench.world.wrist = Point(0.0, 10.0)
-        seen = bench.sensor.observe()
+        setting.table.attractor = Pose(*truth.start)
+        setting.table.wrist = Pose(0.0, 10.0)
+        seen = setting.sensor.observe()
         aim = BehaviorCall.of(record.placing.call.name, {"x": offset.x, "y": offset.y})
-        placed = bench.robot.execute(aim, seen)
+        placed = setting.robot.execute(aim, seen)
         assert placed.status is ExecutionStatus.DONE
         assert placed.wrist_end == record.execution.wrist_start
-        assert bench.sensor.observe() == row.start
-        bench.robot.execute(row.exploratory, row.start)
-        assert bench.sensor.observe() == row.end
+        assert setting.sensor.observe() == row.start
+        setting.robot.execute(row.exploratory, row.start)
+        assert setting.sensor.observe() == row.end

@@ -11,10 +11,11 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from affcli.core.geometry import ConvexPolygon, Point
-from affcli.core.tool import TOOL_PARTS, ToolName, paper_tools
+from affcli.core.tool import ToolName
 from affcli.core.workspace import Workspace
 from affcli.simulation.arm import Reach, reach_at
 from affcli.simulation.reach_of_tool import touchable
+from affcli.simulation.tools.paper import TOOL_PARTS, paper_tools
 
 WORKSPACE = Workspace()
 ARM, RADIUS = WORKSPACE.arm, WORKSPACE.puck.radius

@@ -1,0 +1,114 @@
+"""The paper's behaviors by name, and the motions they give (§5)."""
+
+import math
+from itertools import product
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from affcli.behaviors.grasping import grasp, hold_of
+from affcli.behaviors.moving import (
+    CONTRACT_ARM,
+    DIRECTIONS,
+    EXTEND_ARM,
+    OFFSET_DISTANCES,
+    SLIDE_ARM_LEFT,
+    SLIDE_ARM_RIGHT,
+    moving,
+    paper_repertoire,
+)
+from affcli.behaviors.positioning import position_wrist, positioning_motion
+from affcli.core.behavior import (
+    GRASP,
+    POSITION_WRIST,
+    BehaviorName,
+    repertoire_from_json,
+    repertoire_json,
+)
+from affcli.core.geometry import Point, Pose
+from affcli.core.motion import Carry, Slide
+from affcli.core.tool import Hold
+from affcli.core.workspace import ToolGeometry
+from tests.factories import observation, places
+
+GEOMETRY = ToolGeometry()
+MOVING = (EXTEND_ARM, CONTRACT_ARM, SLIDE_ARM_LEFT, SLIDE_ARM_RIGHT)
+
+
+def test_babbling_draws_from_four_moving_behaviors_with_2_and_5_inches_each() -> None:
+    """§5: "The first four behaviors move the arm in the indicated direction ... Two different
+    values for this parameter were used (2 and 5 inches)". Departs from the paper: position wrist,
+    its fifth behavior, goes before each of them and is not drawn by itself."""
+    assert OFFSET_DISTANCES == (2.0, 5.0)
+    calls = [(one.call.name, one.call.params) for one in paper_repertoire()]
+    assert calls == [
+        (name, (("offset_distance", distance),)) for name, distance in product(MOVING, (2.0, 5.0))
+    ]
+
+
+def test_the_one_binding_behavior_is_a_grasp_at_the_lower_part_of_the_handle() -> None:
+    """§5.1: "It takes as a parameter the location of a single grasp point"."""
+    binding = grasp(GEOMETRY)
+    assert (binding.name, binding.params) == (
+        GRASP,
+        (("grasp_point", GEOMETRY.handle_below_grasp),),
+    )
+    assert hold_of(binding) == Hold(GEOMETRY.handle_below_grasp)
+
+
+def test_a_turned_grasp_keeps_its_angle_in_degrees_and_holds_in_radians() -> None:
+    binding = grasp(GEOMETRY, grasp_point=3.0, angle=-90.0)
+    assert binding.params == (("grasp_point", 3.0), ("angle", -90.0))
+    assert hold_of(binding) == Hold(3.0, -math.pi / 2.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "x", "y"),
+    [
+        (EXTEND_ARM, 0.0, 1.0),
+        (CONTRACT_ARM, 0.0, -1.0),
+        (SLIDE_ARM_LEFT, -1.0, 0.0),
+        (SLIDE_ARM_RIGHT, 1.0, 0.0),
+    ],
+)
+@pytest.mark.parametrize("distance", [2.0, 5.0, 0.25])
+def test_each_moving_behavior_slides_the_tool_its_way_by_its_parameter(
+    name: BehaviorName, x: float, y: float, distance: float
+) -> None:
+    """§5: "a single parameter which determines how far the arm will travel relative to its current
+    position". Extend is +y, contract -y, left -x, right +x of the table."""
+    (behavior,) = moving(name, distance)
+    assert behavior.motion == (Slide(x * distance, y * distance),)
+    assert DIRECTIONS[name] == (x, y)
+
+
+def test_a_repertoire_is_the_same_after_its_json() -> None:
+    repertoire = paper_repertoire()
+    assert repertoire_from_json(repertoire_json(repertoire)) == repertoire
+
+
+@given(places, places, places, st.one_of(st.just(0.0), st.floats(-3.0, 3.0)))
+def test_position_wrist_brings_the_attractor_to_its_offset_from_the_wrist(
+    wrist: Point, at: Point, offset: Point, angle: float
+) -> None:
+    """§5: "moves the manipulator such that the centroid of the attractor is at offset (x, y)
+    relative to the wrist", by the latest observation; lifted, so that it touches nothing."""
+    call = position_wrist(offset, angle)
+    (carried,) = positioning_motion(call, observation(at, wrist=wrist))
+    assert isinstance(carried, Carry)
+    assert (at.x - carried.to.x, at.y - carried.to.y) == offset
+    assert carried.to.angle == pytest.approx(angle)
+
+
+def test_position_wrist_names_no_angle_when_it_is_0() -> None:
+    """So a call of the paper's stays what it was before wrists could turn."""
+    call = position_wrist(Point(-1.5, 12.0))
+    assert (call.name, call.params) == (POSITION_WRIST, (("x", -1.5), ("y", 12.0)))
+    motion = positioning_motion(call, observation(Point(0.0, 24.0)))
+    assert motion == (Carry(Pose(1.5, 12.0, 0.0)),)
+
+
+def test_position_wrist_without_an_observation_is_refused() -> None:
+    with pytest.raises(ValueError, match="observe first"):
+        positioning_motion(position_wrist(Point(0.0, 8.0)), None)
