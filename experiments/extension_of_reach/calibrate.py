@@ -17,13 +17,14 @@ from pathlib import Path
 from statistics import fmean
 from typing import Any
 
+from affcli.report.paper import EXTENSION_OF_REACH, TOTAL
+
 from affcli.config import settings_with
 from affcli.core.task import GOAL_NUMBERS
 from affcli.core.tool import TOOL_PARTS
 from affcli.core.trial import Outcome
 from affcli.errors import AffcliError
 from affcli.lab.reproduction import one_robot
-from affcli.report.paper import EXTENSION_OF_REACH, TOTAL
 
 OPEN_SIZES = (
     ("arm", "flange_height", 0.5, 2.5),

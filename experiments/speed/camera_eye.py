@@ -8,12 +8,12 @@ from typing import Any
 
 import cv2
 import numpy as np
+from affcli.lab.sensing import eye_of
 from measuring import AFFCLI, ROUNDS, Scale, command
 
 from affcli.config import Settings, with_sensor
 from affcli.core.trial import LearningSpec
 from affcli.lab.learning_run import LearningRun
-from affcli.lab.sensing import eye_of
 from affcli.perception.camera_sensor import Eye
 from affcli.perception.palette import ColorClass
 from affcli.perception.rendering import Picture

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import sqlalchemy as sa
+from affcli.simulation.world import World
 from measuring import Scale, bar, verdict
 from workload import SETTINGS
 
@@ -19,7 +20,6 @@ from affcli.core.observation import Observation
 from affcli.core.task import GoalRegion
 from affcli.planning.nested_query import choose_row
 from affcli.simulation.robot import SimulatedRobot
-from affcli.simulation.world import World
 
 BARS = {1_000: 0.05, 100_000: 0.5, 1_000_000: 10.0}
 """Milliseconds by number of rows."""

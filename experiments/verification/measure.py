@@ -19,6 +19,9 @@ from pathlib import Path
 from statistics import fmean, median, stdev
 from typing import Any, NamedTuple
 
+from affcli.lab.bench import tool_named
+from affcli.report.statistics import quantile, wilson
+
 from affcli.config import Settings, with_sensor
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import AffordanceTable
@@ -26,12 +29,10 @@ from affcli.core.observation import SensorKind
 from affcli.core.tool import TOOL_PARTS
 from affcli.core.trial import LearningSpec
 from affcli.core.verification import Evidence, Verdict, VerificationSpec
-from affcli.lab.bench import tool_named
 from affcli.lab.learning_run import LearningRun
 from affcli.lab.predicting import Oracle, PredictionSpec, fresh_pushes
 from affcli.lab.verifying import replications
 from affcli.report.prediction import LEARNED_FROM, PREDICTORS, Push, Score
-from affcli.report.statistics import quantile, wilson
 
 INTACT = tuple((str(tool), str(tool)) for tool in TOOL_PARTS)
 CHANGED = (

@@ -1,9 +1,9 @@
 """The motor schemas from which every behavior is composed (§5)."""
 
+from affcli.behaviors.motor_schemas import hold, move_lifted, move_straight
 from hypothesis import given
 from hypothesis import strategies as st
 
-from affcli.behaviors.motor_schemas import hold, move_lifted, move_straight
 from affcli.core.geometry import Point, Pose
 from affcli.core.motion import Carry, Slide, Wait
 from tests.factories import eighths, places

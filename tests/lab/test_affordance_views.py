@@ -6,6 +6,7 @@ from collections import Counter
 from contextlib import closing
 
 import pytest
+from affcli.report.fates import Fate, TableView
 
 from affcli.config import settings_with
 from affcli.core.trial import Protocol
@@ -19,7 +20,6 @@ from affcli.lab.affordance_views import (
 from affcli.lab.breaking import break_tool
 from affcli.lab.learning import learn
 from affcli.lab.solving import solve
-from affcli.report.fates import Fate, TableView
 from affcli.store import LearningRunInfo, Store
 from tests.lab.quick import IMPATIENT, counted, now, spec_of, taken
 

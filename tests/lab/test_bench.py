@@ -4,6 +4,8 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from affcli.lab.bench import LEARNING, Bench, missing_side, stable_number, tool_named
+from affcli.simulation.world import World
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -12,8 +14,6 @@ from affcli.core.behavior import EXTEND_ARM, BehaviorCall
 from affcli.core.geometry import Point, Pose
 from affcli.core.tool import TOOL_PARTS
 from affcli.errors import DatabaseError
-from affcli.lab.bench import LEARNING, Bench, missing_side, stable_number, tool_named
-from affcli.simulation.world import World
 from tests.factories import bench_with, goal_at
 from tests.lab.quick import EXACT
 

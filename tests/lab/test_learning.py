@@ -6,6 +6,7 @@ from dataclasses import replace
 from itertools import islice, pairwise
 
 import pytest
+from affcli.lab.bench import tool_named
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -13,7 +14,6 @@ from affcli.config import Settings
 from affcli.core.change_detection import change_detected
 from affcli.errors import AffcliError
 from affcli.lab import learning
-from affcli.lab.bench import tool_named
 from affcli.lab.learning import learn
 from affcli.lab.learning_run import LearningRun
 from affcli.simulation.arm import reach_at

@@ -6,12 +6,12 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
+from affcli.simulation.world import World
 
 from affcli.core.tool import TOOL_PARTS
 from affcli.core.trial import LearningSpec, Protocol, RobotRecord
 from affcli.lab.reproduction import one_robot, reproduce
 from affcli.lab.trials import whole_trial
-from affcli.simulation.world import World
 from affcli.store import Store, open_store
 from tests.lab.quick import LEISURELY, learned, now, table_from, taken
 

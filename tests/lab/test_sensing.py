@@ -5,6 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from affcli.lab.sensing import calibration_of, eye_of, sensor_for
+from affcli.simulation.world import World
 
 from affcli.config import Settings, settings_from_json, settings_with, with_sensor
 from affcli.core.observation import SENSOR_KINDS, SensorKind
@@ -13,11 +15,9 @@ from affcli.lab.breaking import break_tool
 from affcli.lab.learning import learn
 from affcli.lab.learning_run import LearningRun
 from affcli.lab.reproduction import one_robot, reproduce
-from affcli.lab.sensing import calibration_of, eye_of, sensor_for
 from affcli.lab.solving import SolvedTrial, solve
 from affcli.lab.trials import trial_specs, whole_trial
 from affcli.perception.camera import Camera
-from affcli.simulation.world import World
 from affcli.store import Store, run_sql
 from tests.factories import bench_with
 from tests.lab.quick import LEISURELY, now, spec_of, table_from

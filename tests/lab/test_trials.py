@@ -6,6 +6,8 @@ from functools import cache
 from itertools import pairwise
 
 import pytest
+from affcli.lab.bench import tool_named
+from affcli.simulation.world import World
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -18,10 +20,8 @@ from affcli.core.observation import movement
 from affcli.core.task import goal_regions, start_positions
 from affcli.core.tool import ToolName, tool_outlines
 from affcli.core.trial import Counters, Outcome, Protocol, TrialRecord, TrialSpec
-from affcli.lab.bench import tool_named
 from affcli.lab.trials import LostAffordances, run_trial, trial_specs, whole_trial
 from affcli.simulation.arm import reach_at
-from affcli.simulation.world import World
 from tests.factories import BINDING, bench_with
 from tests.lab.quick import EXACT, Steps, counted, learned, spec_of, starts_of, table_from
 

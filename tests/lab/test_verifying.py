@@ -4,6 +4,7 @@ from dataclasses import replace
 from itertools import islice
 
 import pytest
+from affcli.lab.bench import tool_named
 
 from affcli.config import Settings
 from affcli.core.affordance import Affordance
@@ -11,7 +12,6 @@ from affcli.core.affordance_table import AffordanceTable
 from affcli.core.tool import TOOL_PARTS
 from affcli.core.verification import Evidence, ReplicationRecord, Verdict, VerificationSpec
 from affcli.errors import DatabaseError, UsageError
-from affcli.lab.bench import tool_named
 from affcli.lab.learning import learn
 from affcli.lab.solving import solve
 from affcli.lab.verifying import replications, verification_spec, verify

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, replace
 
+from affcli.report.paper import EXTENSION_OF_REACH
+
 from affcli.core.affordance import Affordance
 from affcli.core.behavior import (
     CONTRACT_ARM,
@@ -30,7 +32,6 @@ from affcli.core.trial import (
     Truth,
 )
 from affcli.report.overview import Breaking, Overview, ProtocolFigures
-from affcli.report.paper import EXTENSION_OF_REACH
 from affcli.report.reproduction import Reproduction
 from tests.factories import affordance, learning_spec, observation
 

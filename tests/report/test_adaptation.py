@@ -6,6 +6,7 @@ from statistics import fmean
 
 import numpy as np
 import pytest
+from affcli.report.statistics import wilson
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.lines import Line2D
@@ -22,7 +23,6 @@ from affcli.report.adaptation import (
 )
 from affcli.report.figures.adaptation import adaptation_figure
 from affcli.report.figures.canvas import BLUE, ONE_COLUMN, VERMILION, encoded
-from affcli.report.statistics import wilson
 
 
 @dataclass(frozen=True, slots=True)

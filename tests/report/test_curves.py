@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from statistics import fmean
 
 import pytest
+from affcli.report.statistics import HIGH, LOW, quantile
 from hypothesis import given
 from hypothesis import strategies as st
 
 from affcli.report.curves import ENOUGH_BEHAVIORS, Band, Curve, ToolCurves
-from affcli.report.statistics import HIGH, LOW, quantile
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,13 +2,13 @@
 
 import math
 
+from affcli.report.fates import MATCHING_DISTANCE, Fate, around_trial, compared, now, same_effect
 from hypothesis import given
 from hypothesis import strategies as st
 
 from affcli.core.affordance import Affordance
 from affcli.core.behavior import CONTRACT_ARM, EXTEND_ARM, BehaviorCall
 from affcli.core.geometry import Point
-from affcli.report.fates import MATCHING_DISTANCE, Fate, around_trial, compared, now, same_effect
 from tests.factories import affordance
 
 CALLS = [

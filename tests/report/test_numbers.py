@@ -3,12 +3,12 @@
 import json
 
 import pytest
+from affcli.report.paper import BROKEN_TOOL, EXTENSION_OF_REACH, TOTAL
 
 from affcli.core.geometry import Point
 from affcli.report.breaking import Tally, broken_json, dead_rows
 from affcli.report.learning import clock, groups_json, run_json, summary, whole_degrees
 from affcli.report.overview import overview_json
-from affcli.report.paper import BROKEN_TOOL, EXTENSION_OF_REACH, TOTAL
 from affcli.report.reproduction import reproduction_json
 from tests.report.hand_made import BROKEN, FOUR_ROBOTS, GROUPS, OVERVIEW, RUNS, WHOLE, Run
 

@@ -5,6 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from affcli.report.paper import BROKEN_TOOL, EXTENSION_OF_REACH, TOTAL
+from affcli.report.statistics import Spread
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
@@ -13,7 +15,6 @@ from matplotlib.text import Text
 
 from affcli.report.figures.canvas import INK, SKY, TWO_COLUMNS, VERMILION, encoded
 from affcli.report.figures.results import results_figure
-from affcli.report.paper import BROKEN_TOOL, EXTENSION_OF_REACH, TOTAL
 from affcli.report.reproduction import Reproduction
 from affcli.report.results import (
     Beside,
@@ -23,7 +24,6 @@ from affcli.report.results import (
     results_of_many,
     results_of_single,
 )
-from affcli.report.statistics import Spread
 from tests.report.hand_made import FOUR_ROBOTS, MANY_ROBOTS
 
 CELLS = [(tool, goal) for tool in EXTENSION_OF_REACH for goal in (1, 2, 3, 4)]

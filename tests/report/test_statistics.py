@@ -5,11 +5,10 @@ from fractions import Fraction
 from statistics import fmean
 
 import pytest
+from affcli.report.statistics import HIGH, LOW, Spread, quantile, wilson
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
-
-from affcli.report.statistics import HIGH, LOW, Spread, quantile, wilson
 
 successes = st.lists(st.integers(0, 80), min_size=1, max_size=250)
 

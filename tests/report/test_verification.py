@@ -3,13 +3,13 @@
 from dataclasses import replace
 
 import pytest
+from affcli.report.statistics import wilson
 from syrupy.assertion import SnapshotAssertion
 
 from affcli.core.behavior import CONTRACT_ARM, SLIDE_ARM_LEFT, Execution, ExecutionStatus
 from affcli.core.geometry import Point
 from affcli.core.observation import movement
 from affcli.core.verification import ReplicationRecord, VerificationSpec
-from affcli.report.statistics import wilson
 from affcli.report.verification import (
     MOST_ROWS,
     Checked,
