@@ -17,9 +17,10 @@ from affcli.errors import BadInputError, UsageError, one_line
 
 if TYPE_CHECKING:
     from affcli.config import Settings
-    from affcli.core.ports import Explorer, Planner, Setting, World
+    from affcli.core.ports import Explorer, Planner
     from affcli.core.tool import Tool
     from affcli.core.workspace import ToolGeometry
+    from affcli.core.world import Setting, World
 
 KINDS: tuple[Kind, ...] = get_args(Kind)
 

@@ -9,7 +9,6 @@ from affcli.config import Settings, with_sensor
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.identity import Component
 from affcli.core.observation import SensorKind
-from affcli.core.ports import World
 from affcli.core.specs import (
     LearningSpec,
     LearningStep,
@@ -19,6 +18,7 @@ from affcli.core.specs import (
     TrialSpec,
 )
 from affcli.core.trial import TrialStep
+from affcli.core.world import World
 from affcli.lab.learning_run import LearningRun
 from affcli.lab.reproduction import Reproduced, one_robot
 from affcli.lab.run_parts import RunParts, world_of

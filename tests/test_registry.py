@@ -17,11 +17,11 @@ from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.geometry import Point
 from affcli.core.identity import Component
 from affcli.core.part import Part
-from affcli.core.ports import World
 from affcli.core.setting import Setting
 from affcli.core.specs import LearningSpec
 from affcli.core.tool import Tool
 from affcli.core.trial import Truth
+from affcli.core.world import World
 from affcli.errors import BadInputError, UsageError
 from affcli.lab.run_parts import RunParts
 

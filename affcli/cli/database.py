@@ -70,7 +70,7 @@ def learned_runs(
 
 
 def tool_or_default(tool: str | None, run: int | None) -> str | None:
-    """Return the tool that a command is about when it takes one: the T-hook, unless a run is named."""
+    """Return the tool that a command with one tool is about: the T-hook, unless a run is named."""
     return tool if tool is not None or run is not None else DEFAULT_TOOL
 
 

@@ -38,8 +38,6 @@ from affcli.simulation.arm import reach_at
 from affcli.simulation.tasks.extension_of_reach import extension_of_reach
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from affcli.store import Store
 
 OneTool = Annotated[
@@ -238,7 +236,7 @@ def check_out(out: Path, *, force: bool) -> None:
     require_figures()
 
 
-def save_figure(out: Path, figure: "Figure", title: str) -> None:
+def save_figure(out: Path, figure: "figures.canvas.Figure", title: str) -> None:
     """Write a figure and say what it shows."""
     save(out, figures.canvas.encoded(figure, out.suffix))
     say(f"{title}: {one_line(out)}")

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,10 +10,8 @@ from numpy.typing import NDArray
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.behavior import BehaviorCall
 from affcli.core.geometry import Pose
+from affcli.core.goal import Goal
 from affcli.core.observation import Observation
-
-if TYPE_CHECKING:
-    from affcli.core.ports import Goal
 
 Reaches = Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.bool_]]
 """Tells for each wrist position (n,), (n,) (in, table frame) whether the arm can set the tool down
@@ -35,7 +33,7 @@ class Situation:
 
     table: AffordanceTable
     seen: Observation
-    goal: "Goal"
+    goal: Goal
     wrist: Pose
     reaches: Reaches
     holding: BehaviorCall | None = None

@@ -1,11 +1,11 @@
-"""The ports: what robot, sensor, experimenter, goal, planner, explorer and world are.
+"""The ports of the robot: what robot, sensor, experimenter, goal, planner and explorer are.
 
 Each contract says what is asked, when, how often, and what holds after a failure. The suites in
 ``affcli.testing`` hold any part, ours or another's, to its contract.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from collections.abc import Mapping
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,16 +13,10 @@ from numpy.typing import NDArray
 from affcli.core.affordance import Affordance
 from affcli.core.behavior import BehaviorCall, Execution
 from affcli.core.choice import Candidate, Choice, Situation
-from affcli.core.geometry import ConvexPolygon, Point, Pose
-from affcli.core.observation import Observation, SensorKind
-from affcli.core.trial import BabblingRecord, Truth
-
-if TYPE_CHECKING:
-    # Only the worlds and those who open them know what is truly on the table.
-    from affcli.core.scene import Scene
-    from affcli.core.specs import LearningSpec, RowStarts, TrialSpec, VerificationSpec
-    from affcli.core.task import Task
-    from affcli.core.tool import Tool
+from affcli.core.geometry import Point, Pose
+from affcli.core.goal import Goal
+from affcli.core.observation import Observation
+from affcli.core.trial import BabblingRecord
 
 
 class Robot(Protocol):
@@ -62,29 +56,6 @@ class Robot(Protocol):
 
     def reaches(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Tell for each wrist position (n,), (n,) (in, table frame) whether the arm reaches it."""
-
-
-class Goal(Protocol):
-    """A goal as the robot sees it."""
-
-    @property
-    def name(self) -> str:
-        """What it is called."""
-
-    @property
-    def center(self) -> Point:
-        """The place that distances are taken to (in, table frame)."""
-
-    def reached(self, seen: Observation) -> bool:
-        """Tell whether the attractor is seen where it shall be."""
-
-    def squared_distance(
-        self, at: Point, dx: NDArray[np.float64], dy: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
-        """Return the squared distances (n,) (in^2) to the goal of the places `at` + (dx, dy)."""
-
-    def outline(self) -> ConvexPolygon:
-        """Return what to draw (in, table frame)."""
 
 
 class Sensor(Protocol):
@@ -175,127 +146,3 @@ class Explorer(Protocol):
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Remember what `state` gave. ValueError, KeyError or TypeError when it gave none such."""
-
-
-Film = Callable[[float, "Scene"], None]
-"""Called again and again while a behavior is executed, with the robot clock and the scene."""
-
-
-class Setting(Protocol):
-    """A world that was laid out for one learning run, trial or verification.
-
-    A world has one setting at a time: opening another ends the one before.
-    """
-
-    @property
-    def robot(self) -> Robot:
-        """The robot."""
-
-    @property
-    def sensor(self) -> Sensor:
-        """Through what it sees."""
-
-    @property
-    def experimenter(self) -> Experimenter:
-        """Who serves it."""
-
-    @property
-    def binding(self) -> BehaviorCall:
-        """How it takes the tool."""
-
-    @property
-    def exploratory(self) -> Sequence[BehaviorCall]:
-        """What it can try."""
-
-    @property
-    def choices(self) -> np.random.Generator:
-        """The random stream of its own choices."""
-
-    @property
-    def calibration(self) -> str | None:
-        """What its camera's calibration gave, as canonical JSON; None without a camera."""
-
-    def truth(self) -> Truth | None:
-        """Return where the attractor truly was before and after the last behavior; None in a world
-        that cannot tell.
-        """
-
-    def scene(self) -> "Scene | None":
-        """Return what is truly on the table now; None in a world that cannot tell."""
-
-    def film(self, film: Film | None) -> bool:
-        """Show a film what happens from now on, or stop to; False in a world that cannot."""
-
-    def snapshot(self) -> dict[str, Any] | None:
-        """Return, as JSON types, all that is needed to go on from here; None in a world that
-        cannot.
-        """
-
-    def restore(self, snapshot: Mapping[str, Any]) -> None:
-        """Go on from a snapshot.
-
-        Raises:
-            ValueError, KeyError, TypeError: it is none of this world's.
-        """
-
-
-class LostRows(Protocol):
-    """Tells which rows a broken tool has truly lost; for the record, never for the robot."""
-
-    def lost(self, row: Affordance) -> bool:
-        """Tell whether the tool that is left can no longer do what the row says."""
-
-
-class World(Protocol):
-    """Where robots learn and are tested.
-
-    Equal specs give equal records. A world whose engine fails raises SimulationDivergedError, and
-    can be opened again afterwards.
-    """
-
-    @property
-    def name(self) -> str:
-        """By which runs name it."""
-
-    @property
-    def version(self) -> int:
-        """Raised when equal specs give other records than before."""
-
-    @property
-    def unit(self) -> str:
-        """Of its lengths: ``in``."""
-
-    @property
-    def exact_replay(self) -> bool:
-        """Whether doing a run again gives the same record to the bit."""
-
-    def packages(self, sensor: SensorKind) -> tuple[str, ...]:
-        """Return the packages whose versions decide its numbers, seen through a sensor."""
-
-    def tasks(self, task_set: str) -> tuple["Task", ...]:
-        """Return the tasks of a set by its name; KeyError when it has none such."""
-
-    def learning(self, spec: "LearningSpec", *, laid_out: bool = True) -> Setting:
-        """Lay out a learning run (§6); without `laid_out` a snapshot is restored next."""
-
-    def trial(self, spec: "TrialSpec", learned: "LearningSpec") -> Setting:
-        """Lay out a testing trial (§7.1) of a robot that learned by `learned`."""
-
-    def verification(self, spec: "VerificationSpec", learned: "LearningSpec", uses: int) -> Setting:
-        """Lay out a verification (§8).
-
-        Args:
-            spec: which.
-            learned: how the table was learned.
-            uses: how often its rows were used before; a part of its random streams' key.
-        """
-
-    def prediction(self, spec: "VerificationSpec", learned: "LearningSpec") -> Setting:
-        """Lay out fresh pushes (§6.1): as a verification, with random streams of their own."""
-
-    def lost_rows(
-        self, learned: "LearningSpec", left: "Tool", starts: "RowStarts"
-    ) -> LostRows | None:
-        """Return who tells which rows were lost when the tool broke to `left`; None in a world that
-        cannot tell.
-        """

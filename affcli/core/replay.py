@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from affcli.core.affordance import Affordance
+from affcli.core.goal import Goal
 from affcli.core.observation import Observation
-from affcli.core.ports import Goal
 from affcli.core.scene import Scene
 from affcli.core.specs import TrialSpec
 from affcli.core.trial import BabblingRecord, TrialEnd, TrialStep, Truth

@@ -9,13 +9,15 @@ from numpy.typing import NDArray
 
 from affcli import registry
 from affcli.core.choice import Candidate, Choice, Situation
+from affcli.core.goal import Goal
 from affcli.core.observation import Observation
-from affcli.core.ports import Goal, Planner, Setting
+from affcli.core.ports import Planner
 from affcli.core.records import LearningRunInfo, TrialInfo
 from affcli.core.replay import Considered, Replay, ReplayedBehavior, ReplayedStep
 from affcli.core.scene import Scene
 from affcli.core.specs import Counters
 from affcli.core.trial import TrialStep
+from affcli.core.world import Setting
 from affcli.errors import DatabaseError, UsageError
 from affcli.lab.filming import FRAME_RATE, Reel
 from affcli.lab.learning_run import LearningRun

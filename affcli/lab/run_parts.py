@@ -10,10 +10,10 @@ from affcli.config import Settings, require_known, settings_from, with_sensor
 from affcli.core.behavior import BehaviorCall, Repertoire
 from affcli.core.identity import Component, canonical_json
 from affcli.core.observation import SensorKind
-from affcli.core.ports import World
 from affcli.core.specs import LearningSpec
 from affcli.core.task import Task
 from affcli.core.tool import Tool
+from affcli.core.world import World
 from affcli.errors import BadInputError, DatabaseError
 
 

@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 from affcli.core.identity import Component
 from affcli.core.names import one_of
 from affcli.core.observation import SensorKind
-from affcli.core.ports import World
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import Counters, Protocol, SessionSpec, TrialSpec
 from affcli.core.task import Task
 from affcli.core.trial import Outcome, StepRecord, TrialEnd
+from affcli.core.world import World
 from affcli.lab.run_parts import tasks_of, world_of
 from affcli.lab.trials import WithEnd, run_trial, trial_specs
 from affcli.lab.versions import versions

@@ -7,11 +7,12 @@ from affcli import registry
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.identity import Component
 from affcli.core.observation import SensorKind
-from affcli.core.ports import LostRows, Planner, Setting, World
+from affcli.core.ports import Planner
 from affcli.core.specs import Counters, LearningSpec, Protocol, TrialRecord, TrialSpec
 from affcli.core.task import Task
 from affcli.core.tool import Tool
 from affcli.core.trial import StepRecord, TrialEnd, TrialStep, Truth
+from affcli.core.world import LostRows, Setting, World
 from affcli.lab.run_parts import settings_of
 from affcli.procedures.extension_of_reach import extension_of_reach
 

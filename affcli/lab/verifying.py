@@ -7,12 +7,12 @@ from affcli.analysis.regions import region_of
 from affcli.analysis.verification import JudgedTry
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.observation import SensorKind
-from affcli.core.ports import Setting
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import LearningSpec, VerificationSpec
 from affcli.core.tool import Tool
 from affcli.core.trial import Truth
 from affcli.core.verification import Evidence, ReplicationRecord, Verdict, decided_after
+from affcli.core.world import Setting
 from affcli.errors import UsageError
 from affcli.lab.run_parts import world_of
 from affcli.lab.versions import versions

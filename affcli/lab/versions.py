@@ -6,7 +6,7 @@ from importlib.metadata import version
 
 from affcli import __version__
 from affcli.core.observation import SensorKind
-from affcli.core.ports import World
+from affcli.core.world import World
 
 
 def versions(world: World, sensor: SensorKind) -> dict[str, str]:

@@ -13,9 +13,9 @@ from affcli.core.affordance import PROBABILITY_THRESHOLD, REPLICATION_ANGLE_DEGR
 from affcli.core.affordance_table import AffordanceTable, Rows
 from affcli.core.choice import Candidate, Choice, Reaches, Reason, Reasons, Situation
 from affcli.core.geometry import Pose
+from affcli.core.goal import Goal
 from affcli.core.observation import Observation
 from affcli.core.part import Part
-from affcli.core.ports import Goal
 from affcli.core.setting import Setting
 from affcli.planning.selection import blocks, of, smallest, those
 

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.behavior import BehaviorCall
 from affcli.core.choice import Situation
+from affcli.core.goal import Goal
 from affcli.core.observation import Observation
-from affcli.core.ports import Experimenter, Goal, Planner, Robot, Sensor
+from affcli.core.ports import Experimenter, Planner, Robot, Sensor
 from affcli.core.setting import setting
 from affcli.core.trial import Outcome, StepRecord, TrialEnd
 from affcli.errors import SimulationDivergedError

@@ -10,7 +10,7 @@ from rich.text import Text
 
 from affcli.analysis.overview import GoalCounts
 from affcli.analysis.paper import GOALS, PLANNER, STARTS, TASK_SET, other_parts, papers_successes
-from affcli.core.ports import Goal
+from affcli.core.goal import Goal
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import TrialSpec
 from affcli.core.trial import Outcome, StepRecord, TrialEnd

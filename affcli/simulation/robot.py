@@ -18,8 +18,8 @@ from affcli.core.behavior import (
 from affcli.core.geometry import Point, Pose
 from affcli.core.motion import Motion, Slide, Wait
 from affcli.core.observation import Observation
-from affcli.core.ports import Film
 from affcli.core.tool import hold_of
+from affcli.core.world import Film
 from affcli.simulation.arm import reach_at
 from affcli.simulation.pushing import Moment
 from affcli.simulation.table import Table

@@ -11,13 +11,14 @@ from affcli.core.behavior import BehaviorCall, BehaviorName
 from affcli.core.geometry import Pose
 from affcli.core.identity import stream_number
 from affcli.core.observation import Movement, SensorKind
-from affcli.core.ports import Film, Sensor
+from affcli.core.ports import Sensor
 from affcli.core.scene import Scene
 from affcli.core.specs import LearningSpec, RowStarts, TrialSpec, VerificationSpec
 from affcli.core.task import Task
 from affcli.core.tool import Tool, hold_of
 from affcli.core.trial import Truth
 from affcli.core.workspace import Workspace
+from affcli.core.world import Film
 from affcli.perception.camera_settings import CameraSettings
 from affcli.perception.noisy_sensor import SensorSettings
 from affcli.simulation.experimenter import SimulatedExperimenter

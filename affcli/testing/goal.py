@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from affcli.core.geometry import Point
-from affcli.core.ports import Goal
+from affcli.core.goal import Goal
 from affcli.testing.examples import observation
 
 WRIST = Point(0.0, 10.0)

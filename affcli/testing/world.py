@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from affcli.core.babbling_box import BabblingSettings
-from affcli.core.ports import Setting, World
 from affcli.core.scene import Scene
 from affcli.core.specs import LearningSpec, LearningStep, RowStarts, TrialSpec, VerificationSpec
 from affcli.core.trial import Truth
+from affcli.core.world import Setting, World
 from affcli.exploration.random_babbling import RandomBabbling
 from affcli.procedures.babbling import BabblingState, babble
 from affcli.testing.robot import TICK, executed

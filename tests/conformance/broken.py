@@ -16,11 +16,13 @@ from affcli.core.babbling_box import BabblingSettings
 from affcli.core.behavior import GRASP, BehaviorCall, Execution
 from affcli.core.choice import Choice, Situation
 from affcli.core.geometry import Point
+from affcli.core.goal import Goal
 from affcli.core.observation import Observation
-from affcli.core.ports import Film, Goal, Planner, Robot, Sensor, World
+from affcli.core.ports import Planner, Robot, Sensor
 from affcli.core.specs import LearningSpec, TrialSpec, VerificationSpec
 from affcli.core.task import GoalRegion
 from affcli.core.trial import BabblingRecord
+from affcli.core.world import Film, World
 from affcli.exploration.random_babbling import RandomBabbling
 from affcli.planning.nested_query import NestedQuery
 from affcli.simulation.table_world import TableSetting, TableWorld

@@ -10,9 +10,11 @@ from affcli.config import Settings, settings_with
 from affcli.core.affordance import Affordance
 from affcli.core.babbling_box import BabblingSettings
 from affcli.core.behavior import BehaviorCall
-from affcli.core.ports import Experimenter, Goal, Planner, Robot, Sensor, World
+from affcli.core.goal import Goal
+from affcli.core.ports import Experimenter, Planner, Robot, Sensor
 from affcli.core.specs import LearningSpec, TrialSpec, VerificationSpec
 from affcli.core.workspace import ToolGeometry
+from affcli.core.world import World
 from affcli.exploration.random_babbling import RandomBabbling
 from affcli.simulation.table_world import TableSetting, TableWorld
 from affcli.testing import examples
