@@ -236,7 +236,7 @@ def check_out(out: Path, *, force: bool) -> None:
     require_figures()
 
 
-def save_figure(out: Path, figure: "figures.canvas.Figure", title: str) -> None:
+def save_figure(out: Path, figure: "figures.canvas.Drawing", title: str) -> None:
     """Write a figure and say what it shows."""
     save(out, figures.canvas.encoded(figure, out.suffix))
     say(f"{title}: {one_line(out)}")

@@ -72,6 +72,9 @@ METADATA: dict[str, dict[str, None]] = {
 }
 """Nothing of when or with what: the same figure gives the same file."""
 
+Drawing = Figure
+"""What is drawn, for those who hand it on and know no Matplotlib."""
+
 
 @contextmanager
 def style() -> Iterator[None]:
