@@ -18,7 +18,7 @@ from affcli.behaviors.moving import (
     moving,
     paper_repertoire,
 )
-from affcli.behaviors.positioning import position_wrist, positioning_motion
+from affcli.behaviors.positioning import position_wrist, wrist_target
 from affcli.core.behavior import (
     GRASP,
     POSITION_WRIST,
@@ -27,7 +27,7 @@ from affcli.core.behavior import (
     repertoire_json,
 )
 from affcli.core.geometry import Point, Pose
-from affcli.core.motion import Carry, Slide
+from affcli.core.motion import Slide
 from affcli.core.tool import Hold
 from affcli.core.workspace import ToolGeometry
 from tests.factories import observation, places
@@ -95,20 +95,18 @@ def test_position_wrist_brings_the_attractor_to_its_offset_from_the_wrist(
     """§5: "moves the manipulator such that the centroid of the attractor is at offset (x, y)
     relative to the wrist", by the latest observation; lifted, so that it touches nothing."""
     call = position_wrist(offset, angle)
-    (carried,) = positioning_motion(call, observation(at, wrist=wrist))
-    assert isinstance(carried, Carry)
-    assert (at.x - carried.to.x, at.y - carried.to.y) == offset
-    assert carried.to.angle == pytest.approx(angle)
+    target = wrist_target(call, observation(at, wrist=wrist))
+    assert (at.x - target.x, at.y - target.y) == offset
+    assert target.angle == pytest.approx(angle)
 
 
 def test_position_wrist_names_no_angle_when_it_is_0() -> None:
     """So a call of the paper's stays what it was before wrists could turn."""
     call = position_wrist(Point(-1.5, 12.0))
     assert (call.name, call.params) == (POSITION_WRIST, (("x", -1.5), ("y", 12.0)))
-    motion = positioning_motion(call, observation(Point(0.0, 24.0)))
-    assert motion == (Carry(Pose(1.5, 12.0, 0.0)),)
+    assert wrist_target(call, observation(Point(0.0, 24.0))) == Pose(1.5, 12.0, 0.0)
 
 
 def test_position_wrist_without_an_observation_is_refused() -> None:
     with pytest.raises(ValueError, match="observe first"):
-        positioning_motion(position_wrist(Point(0.0, 8.0)), None)
+        wrist_target(position_wrist(Point(0.0, 8.0)), None)

@@ -1,0 +1,100 @@
+"""Tools by value, and how they are held (§5.1)."""
+
+import json
+import math
+
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from affcli.core.geometry import Point, Pose
+from affcli.core.tool import (
+    Hold,
+    Tool,
+    middle_x,
+    placed_parts,
+    tool_from_canonical,
+    turned_outlines,
+    unknown_tool,
+)
+from affcli.core.workspace import ToolGeometry
+from affcli.simulation.tools.paper import paper_tools
+
+GEOMETRY = ToolGeometry()
+PAPER_HOLD = Hold(GEOMETRY.handle_below_grasp)
+tools = st.sampled_from(sorted(paper_tools(GEOMETRY).values(), key=lambda tool: tool.name))
+holds = st.builds(Hold, st.floats(0.0, 15.0), st.floats(-math.pi, math.pi))
+poses = st.builds(Pose, st.floats(-20.0, 20.0), st.floats(0.0, 30.0), st.floats(-7.0, 7.0))
+
+
+def shape(tool: Tool) -> shapely.Geometry:
+    return shapely.union_all([shapely.Polygon(outline.vertices) for outline in tool.outlines])
+
+
+def assert_same(one: shapely.Geometry, other: shapely.Geometry) -> None:
+    assert one.symmetric_difference(other).area == pytest.approx(0.0, abs=1e-9)
+
+
+@given(tools, holds)
+def test_a_tool_is_the_same_after_its_canonical_form(tool: Tool, hold: Hold) -> None:
+    held = tool.held(hold)
+    again = tool_from_canonical(json.loads(json.dumps(held.canonical())))
+    assert again == held
+    assert again.key == held.key
+
+
+@given(tools, holds)
+def test_a_hold_moves_the_tool_along_the_handle_and_then_turns_it(tool: Tool, hold: Hold) -> None:
+    """A grasp farther up brings the tool nearer to the robot, by as much."""
+    lower_end = shape(tool).bounds[1]
+    moved = shapely.affinity.translate(shape(tool), 0.0, -lower_end - hold.grasp_point)
+    turned = shapely.affinity.rotate(moved, hold.angle, origin=(0.0, 0.0), use_radians=True)
+    assert_same(shape(tool.held(hold)), turned)
+
+
+@pytest.mark.parametrize("tool", paper_tools(GEOMETRY).values(), ids=lambda tool: tool.name)
+def test_the_paper_s_own_grasp_leaves_the_tool_frame_as_it_is(tool: Tool) -> None:
+    assert tool.held(PAPER_HOLD) is tool
+
+
+@given(tools, st.floats(-7.0, 7.0))
+def test_outlines_turn_about_the_wrist(tool: Tool, angle: float) -> None:
+    turned = shapely.union_all(
+        [shapely.Polygon(outline.vertices) for outline in turned_outlines(tool.outlines, angle)]
+    )
+    assert_same(
+        turned, shapely.affinity.rotate(shape(tool), angle, origin=(0.0, 0.0), use_radians=True)
+    )
+
+
+def test_outlines_turned_by_nothing_are_the_same_to_the_bit() -> None:
+    for tool in paper_tools(GEOMETRY).values():
+        assert turned_outlines(tool.outlines, 0.0) == tool.outlines
+
+
+@given(tools, poses)
+def test_parts_lie_on_the_table_where_the_wrist_s_pose_puts_them(tool: Tool, wrist: Pose) -> None:
+    placed = placed_parts(tool.parts, wrist)
+    turned = shapely.affinity.rotate(shape(tool), wrist.angle, origin=(0.0, 0.0), use_radians=True)
+    lies = shapely.union_all([shapely.Polygon(part.outline.vertices) for part in placed])
+    assert_same(lies, shapely.affinity.translate(turned, wrist.x, wrist.y))
+    assert [part.name for part in placed] == [part.name for part in tool.parts]
+
+
+@given(tools, st.floats(-10.0, 10.0), st.floats(-5.0, 20.0))
+def test_the_nearest_part_is_the_one_that_no_other_is_nearer_than(
+    tool: Tool, x: float, y: float
+) -> None:
+    nearest = tool.part_nearest(Point(x, y))
+    distances = {
+        part.name: shapely.Polygon(part.outline.vertices).distance(shapely.Point(x, y))
+        for part in tool.parts
+    }
+    assert distances[nearest.name] == pytest.approx(min(distances.values()), abs=1e-9)
+
+
+def test_a_tool_of_which_only_the_name_is_known_has_no_parts() -> None:
+    tool = unknown_tool("rake")
+    assert (tool.name, tool.parts, tool.outlines) == ("rake", (), ())
+    assert middle_x(tool.parts) == 0.0
