@@ -1,24 +1,41 @@
 """Small builders of what the tests are about, each with a default for what a test leaves open."""
 
 from collections.abc import Iterable
+from functools import cache
 
 from hypothesis import strategies as st
 
-from affcli.config import Settings
+from affcli import registry
+from affcli.behaviors.moving import EXTEND_ARM
+from affcli.config import Settings, settings_with
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import AffordanceTable
-from affcli.core.behavior import EXTEND_ARM, GRASP, BehaviorCall
-from affcli.core.geometry import Point
-from affcli.core.observation import Movement, Observation
+from affcli.core.behavior import GRASP, BehaviorCall
+from affcli.core.choice import Situation
+from affcli.core.geometry import Point, Pose
+from affcli.core.identity import Component
+from affcli.core.observation import Movement, Observation, SensorKind
+from affcli.core.ports import Robot
+from affcli.core.specs import (
+    Counters,
+    LearningSpec,
+    Protocol,
+    TrialSpec,
+    VerificationSpec,
+)
 from affcli.core.task import GoalRegion
-from affcli.core.tool import PUCK_COLOR, TOOL_COLORS, Color, ToolName
-from affcli.core.trial import LearningSpec
-from affcli.lab.bench import LEARNING, Bench, tool_named
-from affcli.simulation.world import World
+from affcli.core.tool import PUCK_COLOR, Color, Tool, ToolName
+from affcli.lab.learning_run import LearningRun
+from affcli.lab.run_parts import RunParts
+from affcli.simulation.table_world import TableSetting, TableWorld
+from affcli.simulation.tools.paper import TOOL_COLORS
 
 TOOL_COLOR = TOOL_COLORS[ToolName("t-hook")]
 BINDING = BehaviorCall.of(GRASP, {"grasp_point": 1.0})
 EXTEND_5 = BehaviorCall.of(EXTEND_ARM, {"offset_distance": 5.0})
+
+EXACT = settings_with({"sensor": {"position_noise": 0, "color_noise": 0}}, "a test")
+"""A sensor without noise."""
 
 EIGHTH = 0.125
 eighths = st.integers(-320, 320).map(lambda n: n * EIGHTH)
@@ -31,7 +48,7 @@ seeds = st.integers(0, 2**63 - 1)
 def observation(
     at: Point = Point(0.0, 24.0),
     *,
-    wrist: Point = Point(0.0, 16.0),
+    wrist: Point | Pose = Point(0.0, 16.0),
     object_color: Iterable[float] = PUCK_COLOR,
     tool_color: Iterable[float] = TOOL_COLOR,
 ) -> Observation:
@@ -54,6 +71,8 @@ def affordance(
     used: int = 1,
     successful: int = 1,
     call: BehaviorCall = EXTEND_5,
+    binding: BehaviorCall = BINDING,
+    wrist_angle: float = 0.0,
     object_color: Color = PUCK_COLOR,
     tool_color: Color = TOOL_COLOR,
 ) -> Affordance:
@@ -66,12 +85,13 @@ def affordance(
     )
     return Affordance(
         step,
-        BINDING,
+        binding,
         call,
         start_seen,
         end_seen,
         times_used=used,
         times_successful=successful,
+        wrist_angle=wrist_angle,
     )
 
 
@@ -82,16 +102,27 @@ def table_of(*rows: Affordance) -> AffordanceTable:
 
 def goal_at(x: float, y: float, half_width: float = 2.0) -> GoalRegion:
     """Return a goal region with its centre at (x, y)."""
-    return GoalRegion(1, Point(x, y), half_width)
+    return GoalRegion("1", Point(x, y), half_width)
 
 
-def bench_with(tool: str, seed: int = 0, *words: int, settings: Settings | None = None) -> Bench:
+def situation(
+    table: AffordanceTable, seen: Observation, goal: GoalRegion, robot: Robot
+) -> Situation:
+    """Return where a robot stands that has this table, sees this and wants this."""
+    return Situation(table, seen, goal, robot.wrist, robot.reaches, robot.holding)
+
+
+def tool_named(name: str, settings: Settings | None = None) -> Tool:
+    """Return a registered tool, in the sizes of the settings."""
+    return registry.tool(name, (settings or Settings()).workspace.tools)
+
+
+def setting_with(tool: str, seed: int = 0, settings: Settings | None = None) -> TableSetting:
     """Return a robot at a table of its own, with a tool in its hand at the table's centre."""
-    settings = settings or Settings()
-    world = World(settings.workspace, settings.physics)
-    bench = Bench.of(settings, world, LEARNING, seed, 0, *words)
-    bench.world.tool = tool_named(settings, tool)
-    return bench
+    spec = learning_spec(tool, seed=seed, settings=settings)
+    setting = TableWorld(settings or Settings()).learning(spec, laid_out=False)
+    setting.table.wrist = setting.table.home
+    return setting
 
 
 def learning_spec(
@@ -105,4 +136,54 @@ def learning_spec(
 ) -> LearningSpec:
     """Return the spec of a short learning run; of a timed one when `hours` is given."""
     limit = None if hours is not None else behaviors
-    return LearningSpec(tool, seed, robot, hours, limit, (settings or Settings()).to_json())
+    return RunParts.chosen(settings or Settings()).spec(tool, seed, robot, hours, limit)
+
+
+def trial_spec(
+    learned: LearningSpec,
+    *,
+    goal: str = "1",
+    start: str = "1",
+    held: Tool | None = None,
+    seed: int = 0,
+    sensor: SensorKind | None = None,
+) -> TrialSpec:
+    """Return one of the paper's trials with the tool that was learned, or with another."""
+    tasks = TableWorld(Settings()).tasks(registry.DEFAULTS["task"])
+    task = next(t for t in tasks if (t.goal.name, t.start_name) == (goal, start))
+    return TrialSpec(
+        protocol=Protocol.EXTENSION_OF_REACH,
+        tool=learned.tool,
+        held=held or learned.held,
+        task=task,
+        seed=seed,
+        robot=learned.robot,
+        counters=Counters.AS_LEARNED,
+        planner=Component(registry.DEFAULTS["planner"]),
+        sensor=sensor or learned.sensor,
+        world=learned.world,
+    )
+
+
+def verification_spec(
+    learned: LearningSpec, *, held: Tool | None = None, seed: int = 0, tries: int = 20
+) -> VerificationSpec:
+    """Return a verification with the tool that was learned, or with another."""
+    return VerificationSpec(
+        tool=learned.tool,
+        held=held or learned.held,
+        seed=seed,
+        robot=learned.robot,
+        sensor=learned.sensor,
+        tries=tries,
+        until_verdict=False,
+    )
+
+
+@cache
+def rows_learned(
+    tool: str = "t-hook", behaviors: int = 400, settings: Settings | None = None
+) -> tuple[Affordance, ...]:
+    """Return the rows of a learning run of so many behaviors."""
+    spec = learning_spec(tool, behaviors=behaviors, settings=settings)
+    return tuple(r.affordance for r, _ in LearningRun(spec).steps() if r.affordance is not None)

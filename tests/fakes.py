@@ -4,7 +4,8 @@ The three share a `FakeTable`. What a behavior does to the attractor, which wris
 reach and when lowering the tool is blocked are scripted by the test.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+import math
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import repeat
 
@@ -19,7 +20,7 @@ from affcli.core.behavior import (
     Execution,
     ExecutionStatus,
 )
-from affcli.core.geometry import Point
+from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Observation
 from affcli.core.task import GoalRegion
 from affcli.core.tool import Color
@@ -58,7 +59,7 @@ class FakeTable:
     """What the three fakes share: where attractor, wrist and goal are."""
 
     attractor: Point = Point(0.0, 24.0)
-    wrist: Point = Point(0.0, 16.0)
+    wrist: Pose = Pose(0.0, 16.0)
     goal: GoalRegion | None = None
     tool_color: Color = TOOL_COLOR
 
@@ -73,6 +74,7 @@ class FakeRobot:
         placings: how each position wrist ends, one after the other; done when they run out.
         endings: how each exploratory behavior ends, one after the other; done when they run out.
         reachable: which wrist positions are in reach.
+        repertoire: the exploratory behaviors that it has; None for any.
     """
 
     table: FakeTable
@@ -80,7 +82,9 @@ class FakeRobot:
     placings: Iterable[ExecutionStatus] = ()
     endings: Iterable[ExecutionStatus] = ()
     reachable: Callable[[Point], bool] = everywhere
+    repertoire: Collection[BehaviorCall] | None = None
     clock: float = 0.0
+    holding: BehaviorCall | None = None
     executed: list[tuple[BehaviorCall, Observation | None]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -88,7 +92,7 @@ class FakeRobot:
         self.endings = iter(self.endings)
 
     @property
-    def wrist(self) -> Point:
+    def wrist(self) -> Pose:
         return self.table.wrist
 
     @property
@@ -101,13 +105,22 @@ class FakeRobot:
         return np.array([self.reachable(place) for place in places], dtype=bool)
 
     def execute(self, call: BehaviorCall, seen: Observation | None) -> Execution:
+        known = self.repertoire is None or call in self.repertoire
+        if not known and call.name not in (POSITION_WRIST, GRASP):
+            raise KeyError(call)
         self.executed.append((call, seen))
         start, status = self.table.wrist, ExecutionStatus.DONE
         if call.name == POSITION_WRIST:
             assert seen is not None
             status = next(_ongoing(self.placings))
-            self.table.wrist = Point(seen.object_x - call["x"], seen.object_y - call["y"])
-        elif call.name != GRASP:
+            x, y = seen.wrist_for(Point(call["x"], call["y"]))
+            if self.reachable(Point(x, y)):
+                self.table.wrist = Pose(x, y, math.radians(call.get("angle", 0.0)))
+            else:
+                status = ExecutionStatus.OUT_OF_REACH
+        elif call.name == GRASP:
+            self.holding = call
+        else:
             status = next(_ongoing(self.endings))
             dx, dy = self.effect(call)
             at = self.table.attractor

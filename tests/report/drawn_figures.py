@@ -9,12 +9,13 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from affcli.behaviors.registry import paper_behaviors
+from affcli.report.fates import Fate, RowView, TableView, compared
+
 from affcli.core.affordance import Affordance
 from affcli.core.geometry import Point
 from affcli.core.tool import ToolName, paper_tools
 from affcli.core.workspace import Workspace
 from affcli.report.curves import Curve, ToolCurves
-from affcli.report.fates import Fate, RowView, TableView, compared
 from affcli.report.figures.affordances import affordances_figure
 from affcli.report.figures.canvas import FORMATS, encoded
 from affcli.report.figures.learning import bands_figure, curves_figure

@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 
 import pytest
+from affcli.report.fates import Fate
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.colors import to_rgba_array
@@ -11,7 +12,6 @@ from matplotlib.colors import to_rgba_array
 from affcli.core.behavior import BehaviorCall, BehaviorName
 from affcli.core.geometry import ConvexPolygon
 from affcli.core.tool import ToolPart
-from affcli.report.fates import Fate
 from affcli.report.figures.affordances import affordances_figure
 from affcli.report.figures.arrows import Arrow, Look, draw_arrows
 from affcli.report.figures.canvas import TWO_COLUMNS, canvas, encoded

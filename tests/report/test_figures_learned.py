@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from affcli.report.fates import Fate, RowView
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.patches import Arc, Rectangle
@@ -19,7 +20,6 @@ from affcli.core.behavior import BehaviorCall, BehaviorName
 from affcli.core.geometry import Point
 from affcli.core.task import goal_regions, start_positions
 from affcli.core.tool import ToolName
-from affcli.report.fates import Fate, RowView
 from affcli.report.figures.affordances import affordances_figure
 from affcli.report.figures.canvas import FORMATS, ONE_COLUMN, encoded, style
 from affcli.report.figures.learning import MOST_CURVES, bands_figure, curves_figure

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+from affcli.report.paper import EXTENSION_OF_REACH
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -14,7 +15,6 @@ from affcli.core.tool import ToolName
 from affcli.core.trial import Outcome
 from affcli.report.page import answers
 from affcli.report.page.rendering import render
-from affcli.report.paper import EXTENSION_OF_REACH
 from tests.report.hand_made import FOUR_ROBOTS, MANY_ROBOTS, spec, step
 from tests.report.hand_made_page import (
     BROKEN,
