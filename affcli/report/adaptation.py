@@ -12,6 +12,6 @@ def course_title(course: AdaptationCourse) -> str:
 
 
 def course_note(course: AdaptationCourse) -> str:
-    """Return why there are no intervals; empty when there are: one robot has those of its trials."""
+    """Return why there are no intervals; empty where there are, as over one robot's trials."""
     robots = course.session.spec.robots
     return few_robots_note(robots) if robots > 1 else ""
