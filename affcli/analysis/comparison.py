@@ -1,6 +1,6 @@
 """Our successes beside the paper's (§7.1, §7.2)."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from affcli.analysis.paper import (
@@ -13,10 +13,11 @@ from affcli.analysis.paper import (
     papers_break,
     papers_cell,
 )
-from affcli.analysis.reproduction import Reproduction
+from affcli.analysis.reproduction import Reproduction, Solved
 from affcli.analysis.statistics import ENOUGH_ROBOTS, Spread
 from affcli.core.records import SessionInfo
 from affcli.core.results import TrialResult
+from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome
 
 
@@ -61,8 +62,8 @@ class Results:
         robots: how many; 1 when each tool was learned by itself.
         runs: of single robots, the learning runs by sensor.
         cells: by (tool, goal).
-        total: of all trials of the extension of reach; None when some were not done.
-        broken: of the 16 trials with the broken tool; None when they were not done.
+        total: of the paper's 80 trials, or where it has none of all; None when some were not done.
+        broken: of the trials with the broken tool; None when they were not done.
     """
 
     session: SessionInfo | None
@@ -74,14 +75,36 @@ class Results:
 
 
 def results_of_many(result: Reproduction) -> Results:
-    """Return the results of a reproduction that has the paper's cells."""
+    """Return the results of a reproduction; what the paper has not stands alone."""
     cells = {
-        cell: Beside(paper, result.cells[cell], STARTS)
-        for cell, paper in EXTENSION_OF_REACH.items()
+        cell: Beside(EXTENSION_OF_REACH[cell], counts, STARTS)
+        for cell, counts in result.cells.items()
     }
-    total = Beside(TOTAL, result.totals, TRIALS)
+    total = Beside(TOTAL, result.totals, TRIALS) if cells else None
     broken = Beside(BROKEN, result.broken, BROKEN_TRIALS) if result.broken else None
-    return Results(result.session, result.robots, {}, cells, total, broken)
+    spec = result.session.spec
+    for kind, goals in result.others.items():
+        if (kind.task_set, kind.planner) != (spec.task_set, str(spec.planner)):
+            continue
+        alone = {goal: _alone(solved, result.robots) for goal, solved in goals.items()}
+        if kind.protocol is Protocol.EXTENSION_OF_REACH:
+            cells |= {(kind.tool, goal): beside for goal, beside in alone.items()}
+        elif broken is None:
+            broken = _sum(alone.values())
+    return Results(result.session, result.robots, {}, cells, total or _sum(cells.values()), broken)
+
+
+def _alone(solved: Solved, robots: int) -> Beside:
+    """Return successes that the paper has nothing beside."""
+    return Beside(None, solved.counts, round(solved.tried / robots))
+
+
+def _sum(cells: Collection[Beside]) -> Beside | None:
+    """Return the successes over some cells that the paper has nothing beside; None without any."""
+    if not cells:
+        return None
+    counts = [sum(column) for column in zip(*(cell.counts for cell in cells), strict=True)]
+    return Beside(None, counts, sum(cell.tried for cell in cells))
 
 
 def results_of_single(

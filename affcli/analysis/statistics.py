@@ -82,8 +82,8 @@ class Spread:
     @classmethod
     def of(cls, counts: Sequence[int]) -> "Spread":
         """Summarise one count a robot; ValueError when there are none."""
-        low, high = quantile(counts, LOW), quantile(counts, HIGH)
-        return cls(fmean(counts), mean_interval(counts), low, high)
+        mean, interval = fmean(counts), mean_interval(counts)
+        return cls(mean, interval, quantile(counts, LOW), quantile(counts, HIGH))
 
     def holds(self, count: int) -> bool:
         """Tell whether `count` lies in the central 95 % of robots."""

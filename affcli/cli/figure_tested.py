@@ -20,9 +20,9 @@ from affcli.cli.options import (
 from affcli.cli.terminal import say
 from affcli.errors import BadInputError, one_line
 from affcli.report import figures
-from affcli.report.adaptation import course_title
+from affcli.report.adaptation import course_note, course_title
 from affcli.report.film import MOST_NAMED, shown_of
-from affcli.report.results import few_robots_note, results_title
+from affcli.report.results import results_note, results_title
 
 Session = Annotated[
     int | None,
@@ -94,7 +94,7 @@ def results(
             f"robots run affcli reproduce --robots {ENOUGH_ROBOTS}"
         )
     else:
-        note = _note(found.robots)
+        note = _note(results_note(found))
         say(f"results, session {found.session.id}: {results_title(found)}{note}: {one_line(out)}")
 
 
@@ -113,14 +113,13 @@ def adaptation(
     check_out(out, force=force)
     with opened(database) as store:
         course = lab.adaptation.adaptation_in(store, session)
-    note = _note(course.session.spec.robots)
+    note = _note(course_note(course))
     figure = figures.adaptation.adaptation_figure(course)
     save_figure(
         out, figure, f"adaptation, session {course.session.id}: {course_title(course)}{note}"
     )
 
 
-def _note(robots: int) -> str:
-    """Return why a figure has no intervals."""
-    note = few_robots_note(robots)
+def _note(note: str) -> str:
+    """Return a note as it follows a title."""
     return f", {note}" if note else ""

@@ -19,18 +19,11 @@ def results_in(store: Store, session: int | None) -> Results:
         session: which reproduction; None for the latest.
 
     Raises:
-        UsageError: it is no finished reproduction, or none of the paper's; or there is nothing to
-            show at all.
+        UsageError: it is no finished reproduction; or there is nothing to show at all.
     """
     found = finished_session(store, session, ["reproduce"])
     if found is not None:
-        result = reproduction_of(store, found.id, found.spec.robots)
-        if not result.cells:
-            raise UsageError(
-                f"session {found.id} has nothing that the paper has beside it; see affcli report, "
-                "or name another with --session"
-            )
-        return results_of_many(result)
+        return results_of_many(reproduction_of(store, found.id, found.spec.robots))
     runs = [run for run in map(store.learning.latest, TOOLS) if run is not None]
     own = {run.id for run in runs if not other_parts(run.spec)}
     solving, breaking = (

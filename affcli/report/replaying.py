@@ -98,8 +98,8 @@ def step_words(replay: Replay, step: ReplayedStep) -> tuple[list[str], list[str]
     why = [f"row {chosen.id}: {call_words(chosen.row.exploratory)}", "", *why]
     for other in others[:MOST_CLOSE]:
         why.append(
-            f"next best: row {other.id}, {call_words(other.row.exploratory)}, "
-            f"{other.repositioning:.1f} in; should end {other.expected_distance:.1f} in from there"
+            f"next best: row {other.id}, {call_words(other.row.exploratory)}: "
+            f"{other.repositioning:.1f} in; {other.expected_distance:.1f} in from the centre"
         )
     lost = [f"truly lost: the {replay.spec.shape} cannot do it"] if step.step.lost else []
     return why, [happened, probability, *lost]

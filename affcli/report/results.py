@@ -17,8 +17,11 @@ def results_title(results: Results) -> str:
     return f"{many(results.robots, 'robot')}, seed {spec.seed}, settings: {run_words(spec)}"
 
 
+def results_note(results: Results) -> str:
+    """Return why there are no intervals; empty when there are, or none are expected."""
+    return "" if results.session is None else few_robots_note(results.robots)
+
+
 def few_robots_note(robots: int) -> str:
-    """Return why there are no intervals; empty when there are, and for one robot."""
-    if 1 < robots < ENOUGH_ROBOTS:
-        return f"too few robots for intervals ({ENOUGH_ROBOTS} or more)"
-    return ""
+    """Return that robots are too few for intervals; empty when they are not."""
+    return f"too few robots for intervals ({ENOUGH_ROBOTS} or more)" * (robots < ENOUGH_ROBOTS)

@@ -80,7 +80,7 @@ def step_lines(step: StepRecord, goal: Goal) -> tuple[str, ...]:
         f"attractor at ({x:.1f}, {y:.1f}), {now:.1f} in from the goal's centre",
         f"rows left: {reasons_words(step.reasons)}",
         *regrasped,
-        f"the wrist travels {travel:.1f} in to its place; should end {then:.1f} in from there",
+        f"re-positioning: {travel:.1f} in; should end {then:.1f} in from the centre",
         f"{moved}: {verdict_words(step)}",
         f"probability {before} -> {after}",
     )

@@ -6,24 +6,28 @@
 import hashlib
 import sys
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from affcli.behaviors.registry import paper_behaviors
-from affcli.report.fates import Fate, RowView, TableView, compared
-
+from affcli.analysis.curves import Curve, ToolCurves
+from affcli.analysis.row_status import RowStatus, compared
+from affcli.behaviors.moving import paper_repertoire
 from affcli.core.affordance import Affordance
 from affcli.core.geometry import Point
-from affcli.core.tool import ToolName, paper_tools
+from affcli.core.tool import ToolName, unknown_tool
 from affcli.core.workspace import Workspace
-from affcli.report.curves import Curve, ToolCurves
 from affcli.report.figures.affordances import affordances_figure
 from affcli.report.figures.canvas import FORMATS, encoded
 from affcli.report.figures.learning import bands_figure, curves_figure
 from affcli.report.figures.row import row_figure
 from affcli.report.figures.tools import tools_figure
 from affcli.report.figures.workspace import workspace_figure
+from affcli.report.table_views import RowView, TableView
 from affcli.simulation.arm import reach_at
-from tests.factories import affordance
+from affcli.simulation.tasks.extension_of_reach import extension_of_reach
+from affcli.simulation.tools.paper import paper_tools
+from tests.factories import affordance, learning_spec
+from tests.report.hand_made import learned_run
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,9 +35,10 @@ if TYPE_CHECKING:
 WORKSPACE = Workspace()
 TOOLS = paper_tools(WORKSPACE.tools)
 T_HOOK, L_HOOK = TOOLS[ToolName("t-hook")], TOOLS[ToolName("l-hook")]
+TASKS = extension_of_reach(WORKSPACE.layout)
 REACH = reach_at(WORKSPACE.arm, WORKSPACE.arm.flange_height)
-CALLS = paper_behaviors(WORKSPACE.arm, WORKSPACE.motion, WORKSPACE.tools).exploratory
-KEY = {fate: f"what is {fate.value}" for fate in Fate}
+CALLS = [one.call for one in paper_repertoire()]
+KEY = {status: f"what is {status.value}" for status in RowStatus}
 
 
 def table(*, first: int = 0, count: int = 24) -> list[Affordance]:
@@ -50,7 +55,7 @@ def table(*, first: int = 0, count: int = 24) -> list[Affordance]:
 
 
 def view(
-    rows: Sequence[tuple[Affordance, Fate]], heading: str = "", *, broken: bool = False
+    rows: Sequence[tuple[Affordance, RowStatus]], heading: str = "", *, broken: bool = False
 ) -> TableView:
     """Return a table over the T-hook, or over what is left of it."""
     tool = L_HOOK if broken else T_HOOK
@@ -61,17 +66,18 @@ def view(
 def compared_views() -> list[TableView]:
     """Return two tables that have some rows in common."""
     tables = table(), table(first=8)
-    fates = compared(*tables)
+    statuses = compared(*tables)
     return [
         view(list(zip(rows, its, strict=True)), heading, broken=heading == "Run 2")
-        for rows, its, heading in zip(tables, fates, ("Run 1", "Run 2"), strict=True)
+        for rows, its, heading in zip(tables, statuses, ("Run 1", "Run 2"), strict=True)
     ]
 
 
 def curve(name: str, slope: float) -> Curve:
     """Return a curve of 41 points that rises evenly."""
     minutes = [1.5 * i for i in range(41)]
-    return Curve(name, minutes, [slope * m for m in minutes], [slope / 10.0 for _ in minutes])
+    run = learned_run(1, replace(learning_spec(), held=unknown_tool(name)))
+    return Curve(run, minutes, [slope * m for m in minutes], [slope / 10.0 for _ in minutes])
 
 
 def bands() -> list[ToolCurves]:
@@ -84,11 +90,11 @@ def bands() -> list[ToolCurves]:
 
 FIGURES: dict[str, Callable[[], "Figure"]] = {
     "affordances": lambda: affordances_figure(
-        CALLS, [view([(row, Fate.ROW) for row in table()])], KEY
+        CALLS, [view([(row, RowStatus.LIVE) for row in table()])], KEY
     ),
     "compared": lambda: affordances_figure(CALLS, compared_views(), KEY),
     "row": lambda: row_figure(RowView(table()[3], T_HOOK, WORKSPACE.puck.radius)),
-    "workspace": lambda: workspace_figure(WORKSPACE, T_HOOK, REACH),
+    "workspace": lambda: workspace_figure(WORKSPACE, T_HOOK, REACH, TASKS),
     "tools": lambda: tools_figure(list(TOOLS.values()), (T_HOOK, L_HOOK), WORKSPACE.puck.radius),
     "curves": lambda: curves_figure([curve(f"run {n}", n) for n in range(1, 13)]),
     "bands": lambda: bands_figure(bands()),

@@ -3,9 +3,10 @@
 from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Movement
 from affcli.core.task import GoalRegion
-from affcli.core.tool import ToolName, paper_tools
+from affcli.core.tool import ToolName
 from affcli.core.workspace import TableSurface, ToolGeometry
 from affcli.report.film import FilmedStep, FilmedTrial
+from affcli.simulation.tools.paper import paper_tools
 from tests.factories import moved_by
 
 TOOLS = paper_tools(ToolGeometry())
@@ -69,7 +70,7 @@ def filmed_trial(
         ending=ending,
         parts=held.parts,
         missing=believed.parts_missing_in(held),
-        goal=GoalRegion(3, Point(-12.4, 22.4), 2.25),
+        goal=GoalRegion("3", Point(-12.4, 22.4), 2.25),
         wrist=Pose(0.0, 15.0),
         puck=START,
         puck_radius=1.5,

@@ -3,25 +3,29 @@
 import json
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from hypothesis import strategies as st
 
+from affcli.behaviors.moving import CONTRACT_ARM, EXTEND_ARM, SLIDE_ARM_RIGHT
 from affcli.core.affordance import Affordance
-from affcli.core.behavior import CONTRACT_ARM, EXTEND_ARM, SLIDE_ARM_RIGHT, BehaviorName
+from affcli.core.behavior import BehaviorName
 from affcli.core.geometry import Point, Pose
 from affcli.core.replay import Considered, Difference, Replay, ReplayedStep
 from affcli.core.scene import Scene
-from affcli.core.tool import PUCK_COLOR, TOOL_COLORS, Tool, ToolName, paper_tools
-from affcli.core.trial import Outcome, TrialEnd, TrialSpec, TrialStep
+from affcli.core.specs import TrialSpec
+from affcli.core.tool import PUCK_COLOR, Tool, ToolName
+from affcli.core.trial import Outcome, TrialEnd, TrialStep, Truth
 from affcli.core.workspace import Workspace
 from affcli.report.page.content import Broken, Content, LearnedRows
-from tests.factories import affordance, goal_at
-from tests.report.hand_made import call, row, spec, step
+from affcli.simulation.tools.paper import paper_tools
+from tests.factories import affordance, goal_at, learning_spec
+from tests.report.hand_made import call, learned_run, row, spec, step
 
 WORKSPACE = Workspace()
 TOOLS = paper_tools(WORKSPACE.tools)
-T_HOOK, L_HOOK = TOOLS[ToolName("t-hook")], TOOLS[ToolName("l-hook")]
+T_HOOK = TOOLS[ToolName("t-hook")]
 GOAL = goal_at(0.0, 24.0)
 ROWS = {70: row(7), 90: row(9, offset_x=5.0), 110: row(11, offset_x=-3.0)}
 """Rows by their numbers in the store; all slide the attractor to the left."""
@@ -30,7 +34,7 @@ ROWS = {70: row(7), 90: row(9, offset_x=5.0), 110: row(11, offset_x=-3.0)}
 def scenes(held: Tool, *places: tuple[float, float, float]) -> tuple[Scene, ...]:
     """Return scenes with the attractor at these poses, and the wrist below it."""
     return tuple(
-        Scene(Pose(x, y, angle), PUCK_COLOR, Point(x - 5.0, y - 8.0), held, GOAL)
+        Scene(Pose(x, y, angle), PUCK_COLOR, Pose(x - 5.0, y - 8.0), held, GOAL)
         for x, y, angle in places
     )
 
@@ -39,7 +43,7 @@ def replayed(taken: TrialStep, held: Tool) -> ReplayedStep:
     """Return a step done again, for which no other row came close."""
     tried = taken.record.row
     (number,) = (number for number, one in ROWS.items() if one.step == tried.step)
-    start, end = taken.truth
+    start, end = taken.truth or Truth(Pose(6.0, 24.0), Pose(6.0, 24.0))
     return ReplayedStep(
         taken,
         taken.record.start,
@@ -59,7 +63,7 @@ def replay(
     differences: tuple[Difference, ...] = (),
 ) -> Replay:
     """Return a trial done again; one that was interrupted for no outcome."""
-    held = TOOLS[ToolName(of.shape)].painted(TOOL_COLORS[ToolName(of.tool)])
+    held = of.held.painted(TOOLS[ToolName(of.tool)].color)
     end = None if outcome is None else TrialEnd(outcome, len(steps), 6.0 * len(steps))
     (opening,) = scenes(held, (6.0, 24.0, 0.0))
     again = tuple(replayed(one, held) for one in steps)
@@ -68,7 +72,8 @@ def replay(
 
 def learned(tool: Tool = T_HOOK, rows: Mapping[int, Affordance] | None = None) -> LearnedRows:
     """Return what a learning run left."""
-    return LearnedRows(1, tool, 0, 0, 565, 21, 3601.0, "defaults", ROWS if rows is None else rows)
+    run = learned_run(1, replace(learning_spec(), held=tool), behaviors=565, resets=21)
+    return LearnedRows(run, ROWS if rows is None else rows)
 
 
 BROKEN_TRIALS = (
@@ -89,7 +94,7 @@ BROKEN_TRIALS = (
     ),
 )
 """Row 90, on the right, is lost and excluded in two trials; 110, on the left, in one."""
-BROKEN = Broken(T_HOOK, L_HOOK, 3.0, ROWS, BROKEN_TRIALS)
+BROKEN = Broken(learned(), BROKEN_TRIALS)
 WHOLE_TRIAL = replay(spec(1), Outcome.SOLVED, step(1, ROWS[70]))
 
 
@@ -101,6 +106,7 @@ def content(**changes: object) -> Content:
         "reproduction": None,
         "tools": [learned()],
         "replays": [WHOLE_TRIAL, *BROKEN_TRIALS],
+        "not_replayed": {},
         "left_out": 0,
         "broken": [BROKEN],
         "versions": {"affcli": "0", "python": "3"},

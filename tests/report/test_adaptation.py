@@ -1,18 +1,17 @@
 """Shares of vain tries and mean probabilities, against hand-made trials and a naive count."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from statistics import fmean
 
 import numpy as np
 import pytest
-from affcli.report.statistics import wilson
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
-from affcli.report.adaptation import (
+from affcli.analysis.adaptation import (
     AdaptationCourse,
     MeanProbability,
     Share,
@@ -21,28 +20,11 @@ from affcli.report.adaptation import (
     share_interval,
     shares_of,
 )
+from affcli.analysis.statistics import wilson
+from affcli.core.results import StepSums, TrialGroup
 from affcli.report.figures.adaptation import adaptation_figure
 from affcli.report.figures.canvas import BLUE, ONE_COLUMN, VERMILION, encoded
-
-
-@dataclass(frozen=True, slots=True)
-class Sums:
-    """What a group's trials made of a step number."""
-
-    number: int
-    trials: int
-    lost: int
-    change: float
-
-
-@dataclass(frozen=True, slots=True)
-class Group:
-    """Trials that are summed."""
-
-    trials: int
-    with_rows: int
-    steps: tuple[Sums, ...]
-
+from tests.report.hand_made import session_of
 
 Course = list[tuple[bool, float]]
 """A trial by its steps: whether the row tried was lost; change of the mean probability."""
@@ -53,17 +35,17 @@ courses: st.SearchStrategy[Course] = st.lists(
 robots = st.lists(st.lists(courses, min_size=3, max_size=3), min_size=1, max_size=30)
 
 
-def group_of(trials: Sequence[Course]) -> Group:
+def group_of(trials: Sequence[Course]) -> TrialGroup:
     """Sum trials as the database does."""
     steps = []
     for number in range(1, max(map(len, trials), default=0) + 1):
         taken = [trial[number - 1] for trial in trials if len(trial) >= number]
         changes = sum(change for _, change in taken)
-        steps.append(Sums(number, len(taken), sum(lost for lost, _ in taken), changes))
-    return Group(len(trials), len(trials), tuple(steps))
+        steps.append(StepSums(number, len(taken), sum(lost for lost, _ in taken), changes))
+    return TrialGroup(1, len(trials), len(trials), tuple(steps))
 
 
-def single(*trials: Course) -> list[Group]:
+def single(*trials: Course) -> list[TrialGroup]:
     """Return trials that stand for themselves."""
     return [group_of([trial]) for trial in trials]
 
@@ -136,7 +118,7 @@ def test_trials_without_rows_on_the_missing_side_have_no_probability() -> None:
     ],
 )
 def test_intervals_are_over_trials_of_one_robot_or_over_enough_robots(
-    groups: list[Group], there_are: bool
+    groups: list[TrialGroup], there_are: bool
 ) -> None:
     assert has_intervals(groups) == there_are
     certain: list[Share | MeanProbability] = [*shares_of(groups), *probabilities_of(groups, 1)]
@@ -175,9 +157,7 @@ def test_the_interval_holds_the_truth_as_often_as_it_says() -> None:
 
 GROUPS = single([(True, -0.1)], [(True, -0.1), (True, -0.1), (False, 0.0)])
 COURSE = AdaptationCourse(
-    title="t-hook, broken: l-hook; 2 trials of 1 robot",
-    note="",
-    session=3,
+    session=session_of(3, kind="break-tool", robots=1),
     tool="t-hook",
     shape="l-hook",
     trials=2,
@@ -215,14 +195,16 @@ def test_without_intervals_there_are_no_bands() -> None:
     groups = [group_of([[(True, -0.1)], [(False, 0.0)]])] * 2
     few = replace(
         COURSE,
-        note="too few robots",
+        session=session_of(3, robots=2),
         shares=shares_of(groups),
         broken=probabilities_of(groups, 1),
         whole=probabilities_of(groups, 1),
     )
     assert not any(axes.collections for axes in adaptation_figure(few).axes)
     assert "95 % interval" not in words_of(few)
-    assert f"{COURSE.title}\ntoo few robots" in words_of(few)
+    assert (
+        "t-hook, broken: l-hook; 2 trials of 2 robots\ntoo few robots for intervals (20 or more)"
+    ) in words_of(few)
 
 
 def test_without_a_missing_side_it_says_so() -> None:
@@ -232,5 +214,5 @@ def test_without_a_missing_side_it_says_so() -> None:
 
 
 def test_dollars_are_letters() -> None:
-    strange = replace(COURSE, title="$\\frac{1}{", tool="t-hook")
+    strange = replace(COURSE, shape="$\\frac{1}{")
     assert encoded(adaptation_figure(strange), ".svg").startswith(b"<?xml")

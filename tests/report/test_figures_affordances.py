@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.colors import to_rgba_array
 
+from affcli.analysis.row_status import RowStatus
 from affcli.core.behavior import BehaviorCall, BehaviorName
 from affcli.core.geometry import ConvexPolygon
 from affcli.core.tool import ToolPart
@@ -50,7 +51,7 @@ def test_eight_panels_share_their_axes_and_say_what_they_show() -> None:
 def test_every_row_is_an_arrow_where_the_attractor_was_from_the_wrist() -> None:
     """Fig. 6: start in wrist-centred coordinates, movement in camera coordinates."""
     rows = drawn.table()
-    figure = affordances_figure(CALLS, [drawn.view([(row, Fate.ROW) for row in rows])], KEY)
+    figure = affordances_figure(CALLS, [drawn.view([(row, RowStatus.LIVE) for row in rows])], KEY)
     titles = dict(zip(CALLS, sorted(TITLES, key=by_registry), strict=True))
     for axes in figure.axes:
         expected = [row for row in rows if titles[row.exploratory] == axes.get_title()]
@@ -88,11 +89,11 @@ def test_two_tables_stand_side_by_side_on_the_same_axes() -> None:
     assert {"Run 1", "Run 2"} <= set(texts(figure))
 
 
-def test_rows_of_different_fates_differ_in_grey_too() -> None:
+def test_rows_of_different_statuses_differ_in_grey_too() -> None:
     """By dashes and by heads, and the key names each that occurs."""
     rows = drawn.table()
-    fates = (Fate.KEPT, Fate.LOST, Fate.WON, Fate.EXCLUDED)
-    mixed = [(row, fates[n // 8]) for n, row in enumerate(rows)]
+    statuses = (RowStatus.KEPT, RowStatus.LOST, RowStatus.WON, RowStatus.EXCLUDED)
+    mixed = [(row, statuses[n // 8]) for n, row in enumerate(rows)]
     figure = affordances_figure(CALLS, [drawn.view(mixed)], KEY)
     for axes in figure.axes:
         looks = {
@@ -103,7 +104,7 @@ def test_rows_of_different_fates_differ_in_grey_too() -> None:
         assert len({str(lines.get_color()) for lines, _ in kinds_in(axes)}) == 3
         assert "1 kept\n1 lost\n1 won" in [text.get_text() for text in axes.texts]
     (key,) = figure.legends
-    assert [t.get_text() for t in key.get_texts()] == [KEY[fate] for fate in fates[:3]]
+    assert [t.get_text() for t in key.get_texts()] == [KEY[status] for status in statuses[:3]]
 
 
 def test_a_table_without_rows_is_eight_empty_panels() -> None:
@@ -129,7 +130,7 @@ def test_however_odd_a_tool_is_its_panels_fit_a_page(x: float, y: float) -> None
 
 def test_rows_of_other_behaviors_are_not_hidden() -> None:
     jump = BehaviorCall.of(BehaviorName("jump"), {"height": 3.0})
-    rows = [(affordance(call=jump), Fate.ROW)]
+    rows = [(affordance(call=jump), RowStatus.LIVE)]
     figure = affordances_figure(CALLS, [drawn.view(rows)], KEY)
     assert len(figure.axes) == 9
     assert "Jump, 3 in" in texts(figure)
@@ -138,11 +139,11 @@ def test_rows_of_other_behaviors_are_not_hidden() -> None:
 @pytest.mark.parametrize(("behaviors", "tables"), [(1, 1), (2, 3), (6, 2), (13, 1)])
 def test_any_number_of_behaviors_stands_in_rows_that_fit(behaviors: int, tables: int) -> None:
     calls = [
-        BehaviorCall.of(BehaviorName(f"b{n}"), {"angle": math.radians(angle)})
+        BehaviorCall.of(BehaviorName(f"b{n}"), {"angle": float(angle)})
         for n in range(behaviors)
         for angle in (15, 30)
     ]
-    views = [drawn.view([(affordance(call=call), Fate.ROW) for call in calls])] * tables
+    views = [drawn.view([(affordance(call=call), RowStatus.LIVE) for call in calls])] * tables
     figure = affordances_figure(calls, views, KEY)
     assert len(figure.axes) == len(calls) * tables
     titles = sorted(axes.get_title() for axes in figure.axes)

@@ -16,9 +16,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.patches import Arc, Rectangle
 
+from affcli.analysis.row_status import RowStatus
 from affcli.core.behavior import BehaviorCall, BehaviorName
 from affcli.core.geometry import Point
-from affcli.core.task import goal_regions, start_positions
 from affcli.core.tool import ToolName
 from affcli.report.figures.affordances import affordances_figure
 from affcli.report.figures.canvas import FORMATS, ONE_COLUMN, encoded, style
@@ -27,9 +27,20 @@ from affcli.report.figures.row import row_figure
 from affcli.report.figures.things import round_length
 from affcli.report.figures.tools import tools_figure
 from affcli.report.figures.workspace import workspace_figure
+from affcli.report.table_views import RowView
+from affcli.simulation.tasks.extension_of_reach import goal_regions, start_positions
 from tests.factories import affordance
 from tests.report import drawn_figures as drawn
-from tests.report.drawn_figures import CALLS, FIGURES, L_HOOK, REACH, T_HOOK, TOOLS, WORKSPACE
+from tests.report.drawn_figures import (
+    CALLS,
+    FIGURES,
+    L_HOOK,
+    REACH,
+    T_HOOK,
+    TASKS,
+    TOOLS,
+    WORKSPACE,
+)
 from tests.report.reading import (
     arrows_in,
     circles,
@@ -46,7 +57,9 @@ MISCHIEF = "$x_{^\\frac <script>[/]\x1b[31m" + "č机" * 9
 def test_names_are_shown_as_they_are_and_never_as_formulas() -> None:
     call = BehaviorCall.of(BehaviorName(MISCHIEF), {"$d$": 3.0})
     row = replace(affordance(call=call), binding=call)
-    table = affordances_figure([], [drawn.view([(row, Fate.ROW)], "$h_{$")], {Fate.ROW: "$"})
+    table = affordances_figure(
+        [], [drawn.view([(row, RowStatus.LIVE)], "$h_{$")], {RowStatus.LIVE: "$"}
+    )
     one = row_figure(RowView(row, T_HOOK, 1.5))
     lines = curves_figure([drawn.curve(MISCHIEF, 1.0)])
     for figure in (table, one, lines):
@@ -101,7 +114,7 @@ def test_a_row_is_drawn_where_it_was_seen() -> None:
 
 
 def test_the_workspace_shows_goals_starts_tool_and_reach() -> None:
-    figure = workspace_figure(WORKSPACE, T_HOOK, REACH)
+    figure = workspace_figure(WORKSPACE, T_HOOK, REACH, TASKS)
     (axes,) = figure.axes
     assert figure.get_size_inches()[0] == ONE_COLUMN
     said = texts(figure)
@@ -126,7 +139,7 @@ def test_the_workspace_shows_goals_starts_tool_and_reach() -> None:
 
 
 def test_an_arm_that_cannot_come_near_has_two_bounds() -> None:
-    (axes,) = workspace_figure(WORKSPACE, T_HOOK, replace(REACH, inner=6.0)).axes
+    (axes,) = workspace_figure(WORKSPACE, T_HOOK, replace(REACH, inner=6.0), TASKS).axes
     arcs = [patch for patch in axes.patches if isinstance(patch, Arc)]
     assert [arc.width / 2 for arc in arcs] == pytest.approx([6.0, REACH.outer])
 
@@ -165,7 +178,9 @@ def test_no_two_curves_look_alike_in_grey() -> None:
     assert rows.get_ylim()[0] == share.get_ylim()[0] == 0.0
     assert rows.get_ylim()[1] > 60.0 * MOST_CURVES
     (key,) = figure.legends
-    assert [t.get_text() for t in key.get_texts()] == [f"run {n}" for n in range(MOST_CURVES)]
+    assert [t.get_text() for t in key.get_texts()] == [
+        f"Run {n} (run 1)" for n in range(MOST_CURVES)
+    ]
 
 
 def test_many_robots_are_a_column_a_tool_on_the_same_axes() -> None:

@@ -5,22 +5,26 @@ import json
 import pytest
 from affcli.report.paper import BROKEN_TOOL, EXTENSION_OF_REACH, TOTAL
 
+from affcli.analysis.breaking import Tally, dead_rows
+from affcli.analysis.paper import BROKEN as IN_PAPER
+from affcli.analysis.paper import EXTENSION_OF_REACH, GOALS, TOOLS, TOTAL
 from affcli.core.geometry import Point
-from affcli.report.breaking import Tally, broken_json, dead_rows
-from affcli.report.learning import clock, groups_json, run_json, summary, whole_degrees
+from affcli.report.breaking import broken_json
+from affcli.report.learning import groups_json, run_json, summary
 from affcli.report.overview import overview_json
 from affcli.report.reproduction import reproduction_json
-from tests.report.hand_made import BROKEN, FOUR_ROBOTS, GROUPS, OVERVIEW, RUNS, WHOLE, Run
+from affcli.report.words import clock, whole_degrees
+from tests.report.hand_made import BROKEN, FOUR_ROBOTS, GROUPS, OVERVIEW, RUNS, WHOLE, learned_run
 
 
 def test_the_papers_table() -> None:
     """§7.1: 69 of 80; its row and column sums."""
     assert TOTAL == 69
-    assert [sum(counts) for counts in EXTENSION_OF_REACH.values()] == [10, 14, 15, 14, 16]
-    columns = zip(*EXTENSION_OF_REACH.values(), strict=True)
-    assert [sum(counts) for counts in columns] == [15, 14, 20, 20]
-    assert len(EXTENSION_OF_REACH) * 4 * 4 == 80
-    assert BROKEN_TOOL == 16
+    by_tool = [[EXTENSION_OF_REACH[tool, goal] for goal in GOALS] for tool in TOOLS]
+    assert [sum(counts) for counts in by_tool] == [10, 14, 15, 14, 16]
+    assert [sum(counts) for counts in zip(*by_tool, strict=True)] == [15, 14, 20, 20]
+    assert len(EXTENSION_OF_REACH) * 4 == 80
+    assert IN_PAPER == 16
 
 
 def test_tally() -> None:
@@ -50,7 +54,7 @@ def test_dead_rows_and_their_side() -> None:
 
 
 def test_broken_json() -> None:
-    value = broken_json("l-hook", 3.5, [*WHOLE, *BROKEN])
+    value = broken_json(RUNS[0], [*WHOLE, *BROKEN])
     assert value["broken"]["solved"] == 2
     assert value["whole"]["trials"] == 3
     assert value["whole"]["mean_steps"] == 1.0
@@ -68,7 +72,7 @@ def test_reproduction_json() -> None:
     value = reproduction_json(FOUR_ROBOTS)
     assert (value["robots"], len(value["cells"])) == (4, 20)
     first, second, *_ = value["cells"]
-    assert (first["tool"], first["goal"], first["paper"]) == ("stick", 1, 0)
+    assert (first["tool"], first["goal"], first["paper"]) == ("stick", "1", 0)
     assert (first["mean"], first["low"], first["high"]) == (1.0, 0, 2)
     assert (first["p_paper"], first["inside"]) == (0.25, True)
     assert (second["paper"], second["p_paper"], second["inside"]) == (2, 0.25, True)
@@ -90,9 +94,12 @@ def test_overview_json_is_json() -> None:
         "run": 1,
         "tool": "t-hook",
         "sensor": "noisy",
-        "goal": 1,
+        "planner": "nested-query",
+        "task_set": "extension-of-reach",
+        "goal": "1",
         "solved": 3,
         "tried": 4,
+        "paper": 4,
     }
     assert value["broken"][1]["broken"]["mean_steps"] is None
     assert [again["robots"] for again in value["reproductions"]] == [4]
@@ -123,9 +130,9 @@ def test_robot_time(seconds: float, words: str) -> None:
 
 
 def test_one_is_not_many() -> None:
-    one = Run(1, RUNS[0].spec, behaviors=1, rows=1, resets=1, robot_seconds=5.2)
+    one = learned_run(1, RUNS[0].spec, behaviors=1, rows=1, resets=1, robot_seconds=5.2)
     assert summary(one) == "0 min 05 s, 1 behavior, 1 row, 1 reset"
-    none = Run(1, RUNS[0].spec, behaviors=2, rows=0, resets=2, robot_seconds=5.2)
+    none = learned_run(1, RUNS[0].spec, behaviors=2, rows=0, resets=2, robot_seconds=5.2)
     assert summary(none) == "0 min 05 s, 2 behaviors, 0 rows, 2 resets"
 
 

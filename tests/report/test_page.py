@@ -1,26 +1,27 @@
 """The page, made of content whose answers are known beforehand."""
 
+import json
 import re
 from dataclasses import replace
 from typing import Any
 
 import pytest
-from affcli.report.paper import EXTENSION_OF_REACH
 from hypothesis import given
 from hypothesis import strategies as st
 
+from affcli.analysis.paper import EXTENSION_OF_REACH
 from affcli.core.affordance import Affordance
-from affcli.core.replay import Difference
+from affcli.core.replay import Difference, Replay
 from affcli.core.tool import ToolName
 from affcli.core.trial import Outcome
 from affcli.report.page import answers
+from affcli.report.page.content import Broken
 from affcli.report.page.rendering import render
-from tests.report.hand_made import FOUR_ROBOTS, MANY_ROBOTS, spec, step
+from tests.report.hand_made import FOUR_ROBOTS, MANY_ROBOTS, session_of, spec, step
 from tests.report.hand_made_page import (
     BROKEN,
     BROKEN_TRIALS,
     ROWS,
-    T_HOOK,
     TOOLS,
     WHOLE_TRIAL,
     content,
@@ -30,6 +31,13 @@ from tests.report.hand_made_page import (
     tables,
 )
 
+
+def becoming(trial: Replay, shape: str) -> Replay:
+    """Return a trial with another tool than it was with."""
+    return replace(trial, spec=replace(trial.spec, held=TOOLS[ToolName(shape)]))
+
+
+STICK = Broken(learned(), [becoming(trial, "stick") for trial in BROKEN_TRIALS])
 HOSTILE = "<b onclick='x'>&\"</script>{{7*7}}"
 COMMAND = "affcli report --db my.db --html my.html"
 
@@ -40,11 +48,7 @@ COMMAND = "affcli report --db my.db --html my.html"
 def test_whether_the_paper_s_table_is_reproduced() -> None:
     yes = replace(
         MANY_ROBOTS,
-        cells={
-            (tool, goal): [paper] * 20
-            for tool, counts in EXTENSION_OF_REACH.items()
-            for goal, paper in enumerate(counts, 1)
-        },
+        cells={cell: [paper] * 20 for cell, paper in EXTENSION_OF_REACH.items()},
     )
     said = answers.reproduced(yes)
     assert said.startswith("Yes: in 20 of 20 cells the paper's count lies within the central 95 %")
@@ -99,11 +103,11 @@ def test_where_a_tool_affords_pulling_is_counted_row_by_row(
 
 
 def test_what_was_unlearned_when_the_tool_broke() -> None:
-    result = answers.unlearned(BROKEN)
-    assert result.excluded == {90: 2, 110: 1}
-    assert result.lost == {90}
-    assert result.missing == {90}
-    assert answers.forgot(BROKEN, result) == (
+    dead = answers.excluded_rows(BROKEN)
+    assert {number: row.trials for number, row in dead.items()} == {90: 2, 110: 1}
+    assert [number for number, row in dead.items() if row.lost] == [90]
+    assert [number for number, row in dead.items() if row.on_missing_side] == [90]
+    assert answers.forgot(BROKEN) == (
         "2 of its 3 rows were excluded in at least one of 3 trials; with 1 of these the puck lay "
         "on the side that is gone, and 1 are truly lost: the l-hook cannot do them. 2 of 5 tries "
         "went to lost rows. Each trial began with the table as learned; 2 of 3 were solved (paper: "
@@ -112,10 +116,10 @@ def test_what_was_unlearned_when_the_tool_broke() -> None:
 
 
 def test_a_tool_that_lost_both_sides_has_no_missing_side() -> None:
-    stick = replace(BROKEN, shape=TOOLS[ToolName("stick")], missing_side=0.0)
-    said = answers.forgot(stick, answers.unlearned(stick))
+    said = answers.forgot(STICK)
+    assert "paper" not in said
     assert "the side that is gone" not in said
-    page = render(content(broken=[stick]), COMMAND)
+    page = render(content(broken=[STICK]), COMMAND)
     assert "on the missing side" not in page
 
 
@@ -148,8 +152,7 @@ def test_the_page_holds_every_section_that_there_is_something_for() -> None:
 
 
 def test_several_tools_that_broke_are_all_shown() -> None:
-    stick = replace(BROKEN, shape=TOOLS[ToolName("stick")], missing_side=0.0)
-    page = render(content(broken=[BROKEN, stick]), COMMAND)
+    page = render(content(broken=[BROKEN, STICK]), COMMAND)
     assert re.findall(r"<h3>(The .*? that became .*?)</h3>", page) == [
         "The t-hook that became the l-hook",
         "The t-hook that became the stick",
@@ -157,7 +160,9 @@ def test_several_tools_that_broke_are_all_shown() -> None:
 
 
 def test_a_tool_that_only_gained_a_part_misses_none() -> None:
-    grown = replace(BROKEN, tool=TOOLS[ToolName("l-hook")], shape=T_HOOK, missing_side=0.0)
+    grown = Broken(
+        learned(TOOLS[ToolName("l-hook")]), [becoming(t, "t-hook") for t in BROKEN_TRIALS]
+    )
     page = render(content(broken=[grown]), COMMAND)
     section = page.split('<section id="broken"')[1].split("</section>")[0]
     assert 'class="missing"' not in section
@@ -175,9 +180,12 @@ def test_each_row_can_be_led_to_once() -> None:
 @pytest.mark.fault(31)
 @pytest.mark.parametrize("robots", [None, MANY_ROBOTS])
 def test_whatever_is_put_into_it_is_escaped(robots: Any) -> None:
-    evil = replace(learned(), settings=HOSTILE)
+    run = learned().run
+    settings = json.dumps({HOSTILE: HOSTILE})
+    evil = replace(learned(), run=replace(run, spec=replace(run.spec, settings=settings)))
     if robots is not None:
-        robots = replace(robots, settings=HOSTILE, failures={HOSTILE: 3})
+        session = session_of(5, settings=settings)
+        robots = replace(robots, session=session, failures={HOSTILE: 3})
     page = render(
         content(
             database=HOSTILE,
@@ -202,7 +210,7 @@ def test_text_in_the_data_cannot_leave_it() -> None:
     page = render(content(replays=[named]), COMMAND)
     assert page.count("</script>") == 3
     assert "<script>alert" not in page
-    assert data_in(page)["trials"][0]["tool"] == evil
+    assert data_in(page)["trials"][0]["tool"] == evil.replace("\u2028", "\\u2028")
 
 
 def test_the_first_trial_shown_is_one_of_adapting() -> None:

@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from affcli.behaviors.moving import EXTEND_ARM
 from affcli.core.affordance import Affordance
-from affcli.core.behavior import EXTEND_ARM
 from affcli.core.trial import Outcome
-from affcli.core.workspace import TableSurface, ToolGeometry, Workspace
+from affcli.core.workspace import TableSurface, Workspace
 from affcli.report.page import drawings, films
 from affcli.report.page.rendering import render
-from tests.factories import affordance
+from tests.factories import BINDING, affordance
 from tests.report.hand_made import call, row, spec, step
 from tests.report.hand_made_page import (
     BROKEN_TRIALS,
@@ -23,11 +23,13 @@ from tests.report.hand_made_page import (
     WHOLE_TRIAL,
     content,
     data_in,
+    learned,
     replay,
     tables,
 )
 
 COMMAND = "affcli report --db my.db --html my.html"
+RUN = learned().run
 lengths = st.floats(-1e4, 1e4)
 
 
@@ -77,27 +79,32 @@ def test_the_words_of_a_film(values: list[float], text: str) -> None:
 
 
 def test_a_step_says_why_it_was_taken_and_what_came_of_it() -> None:
-    (known,) = films.trial_data(WHOLE_TRIAL, 0)["steps"]
-    assert known["left"] == [97, 80, 24, 5]
+    (known,) = films.trial_data(WHOLE_TRIAL, RUN, 0)["steps"]
+    assert [(one["name"], one["rows"]) for one in known["reasons"]] == [
+        ("consistent", 97),
+        ("probable", 80),
+        ("reachable", 24),
+        ("nearest", 5),
+    ]
     assert known["close"] == [[70, "slide arm left 5", "2.0", "1.5", "1/1"]]
     assert known["at"] == [6.0, 24.0]
-    assert known["toGoal"] == "6.0"
+    assert known["distance_to_goal"] == 6.0
     assert known["expected"] == [-4.0, 0.0, "4.0 in at 180 deg"]
     assert known["seen"] == [-4.0, 0.0, "4.0 in at 180 deg"]
     assert (known["before"], known["after"]) == ([1, 1], [2, 2])
-    assert (known["replicated"], known["blocked"], known["died"]) == (True, False, False)
+    assert (known["replicated"], known["blocked"], known["excluded"]) == (True, False, False)
     assert (known["frames"], known["placed"]) == (3, 1)
 
 
 def test_a_puck_that_only_seems_to_move_does_not() -> None:
     """The sensor's noise is not called a movement of 0.0 in."""
     trial = replay(spec(), Outcome.STEP_LIMIT, step(1, ROWS[70], seen=(0.02, -0.01)))
-    (known,) = films.trial_data(trial, 0)["steps"]
+    (known,) = films.trial_data(trial, RUN, 0)["steps"]
     assert known["seen"] == [0.02, -0.01, "none"]
 
 
 def test_the_film_of_a_trial_is_that_of_its_scenes() -> None:
-    film = films.trial_data(BROKEN_TRIALS[1], 0)["film"]
+    film = films.trial_data(BROKEN_TRIALS[1], RUN, 0)["film"]
     assert unpacked(film["x"]) == pytest.approx([6.0, 6.0, 2.0] * 2)
     assert unpacked(film["a"]) == pytest.approx([0.0, 0.0, 0.5] * 2)
     assert unpacked(film["wy"]) == pytest.approx([16.0] * 6)
@@ -105,22 +112,18 @@ def test_the_film_of_a_trial_is_that_of_its_scenes() -> None:
 
 
 def test_a_trial_without_a_step_shows_how_it_opens() -> None:
-    known = films.trial_data(replay(spec(), Outcome.NO_ROW), 0)
+    known = films.trial_data(replay(spec(), Outcome.NO_ROW), RUN, 0)
     assert known["steps"] == []
     assert unpacked(known["film"]["x"]) == [6.0]
 
 
 def test_trials_of_different_tables_are_drawn_each_on_its_own() -> None:
-    wide = Workspace(table=TableSurface(half_width=20.0), tools=ToolGeometry(bar_reach=4.0))
+    wide = Workspace(table=TableSurface(half_width=20.0))
     other = replay(spec(2), Outcome.SOLVED, step(1, ROWS[70]), number=9, workspace=wide)
     data = data_in(render(content(replays=[WHOLE_TRIAL, other, BROKEN_TRIALS[0]]), COMMAND))
     assert [trial["world"] for trial in data["trials"]] == [0, 1, 0]
     usual, wider = data["worlds"]
     assert (usual["table"]["right"], wider["table"]["right"]) == (16.0, 20.0)
-    reaches = [
-        max(x for x, _ in w["tools"]["t-hook"]["parts"]["right bar"]) for w in (usual, wider)
-    ]
-    assert reaches == [5.6, 4.0]
     for world in (usual, wider):
         left, bottom, width, height = world["view"]
         table = world["table"]
@@ -166,12 +169,12 @@ def test_a_sector_turned_by_a_quarter_is_the_next_one(dx: float, dy: float) -> N
 def test_every_row_is_drawn_once_and_fits_into_the_frame(
     rows: dict[int, Affordance], tool: Any
 ) -> None:
-    drawn = drawings.panels(tool, rows)
+    drawn = drawings.panels(tool, BINDING, rows)
     arrows = [arrow for panel in drawn for arrow in panel.arrows]
     assert sorted(arrow.id for arrow in arrows) == sorted(rows)
-    frame = drawings.frame([tool], drawn)
+    frame = drawings.frame(drawn)
     right, top = frame.left + frame.width, frame.bottom + frame.height
-    corners = [corner for part in tool.parts for corner in part.outline.vertices]
+    corners = [c for part in tool.parts for c in part.outline.vertices] if drawn else []
     for arrow in arrows:
         row_drawn = rows[arrow.id]
         start = row_drawn.start.wrist_to_object
@@ -186,7 +189,7 @@ def test_every_row_is_drawn_once_and_fits_into_the_frame(
 
 @given(rows=tables())
 def test_a_panel_holds_one_behavior_of_one_distance(rows: dict[int, Affordance]) -> None:
-    drawn = drawings.panels(T_HOOK, rows)
+    drawn = drawings.panels(T_HOOK, BINDING, rows)
     titles = [panel.title for panel in drawn]
     assert len(set(titles)) == len(titles)
     for panel in drawn:
@@ -197,13 +200,13 @@ def test_a_panel_holds_one_behavior_of_one_distance(rows: dict[int, Affordance])
 
 def test_the_shorter_distance_comes_first() -> None:
     rows = {n: affordance(n, call=call(EXTEND_ARM, inches)) for n, inches in ((1, 5.0), (2, 2.0))}
-    titles = [panel.title for panel in drawings.panels(T_HOOK, rows)]
+    titles = [panel.title for panel in drawings.panels(T_HOOK, BINDING, rows)]
     assert titles == ["extend arm, 2 in", "extend arm, 5 in"]
 
 
 def test_exclusions_of_trials_replace_those_of_the_counters() -> None:
     used_up = {70: row(7, used=2), 90: ROWS[90]}
-    (panel,) = drawings.panels(T_HOOK, used_up)
+    (panel,) = drawings.panels(T_HOOK, BINDING, used_up)
     assert [arrow.excluded for arrow in panel.arrows] == [1, 0]
-    (panel,) = drawings.panels(T_HOOK, used_up, {90: 3})
+    (panel,) = drawings.panels(T_HOOK, BINDING, used_up, {90: 3})
     assert [arrow.excluded for arrow in panel.arrows] == [0, 3]

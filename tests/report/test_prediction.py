@@ -6,16 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from affcli.analysis.prediction import Errors, Prediction, Push, Score, scores
 from affcli.core.observation import Movement
-from affcli.report.prediction import (
-    Errors,
-    Foretold,
-    Push,
-    Score,
-    prediction_json,
-    prediction_tables,
-    scores,
-)
+from affcli.report.prediction import prediction_json, prediction_tables
 from tests.report.drawn import drawn
 
 NONE = Movement(0.0, 0.0, 0.0)
@@ -32,8 +25,8 @@ def push(
     wrist: Movement = NONE,
     rows: int = 5,
 ) -> Push:
-    """Return a push of which one table foretold something."""
-    return Push(seen.distance > 0.5, seen, wrist, {rows: Foretold(by_row, by_mean)})
+    """Return a push of which one table predicted something."""
+    return Push(seen.distance > 0.5, seen, wrist, {rows: Prediction(by_row, by_mean)})
 
 
 HAND_MADE = [
@@ -46,7 +39,7 @@ HAND_MADE = [
 ]
 
 
-def test_hits_and_false_alarms_are_counted_where_a_row_foretold_a_movement() -> None:
+def test_hits_and_false_alarms_are_counted_where_a_row_predicted_a_movement() -> None:
     (score,) = scores(HAND_MADE)
     assert (score.rows, score.moved, score.hits) == (5, 3, 2)
     assert (score.still, score.false_alarms) == (3, 1)
@@ -72,11 +65,11 @@ moves = st.builds(to, st.floats(-5, 5), st.floats(-5, 5))
 @given(st.lists(st.builds(push, moves, moves | st.just(NONE), moves, moves), min_size=1))
 def test_scores_are_what_counting_gives(pushes: list[Push]) -> None:
     score = Score.of(pushes, 5)
-    foretold = [one for one in pushes if one.foretold[5].by_row.distance > 0.0]
+    predicted = [one for one in pushes if one.predicted[5].by_row.distance > 0.0]
     assert score.moved + score.still == len(pushes)
-    assert score.hits + score.false_alarms == len(foretold)
-    assert score.hits == sum(one.seen.distance > 0.5 for one in foretold)
-    off = sorted(math.dist(one.seen, one.foretold[5].by_row) for one in foretold if one.moved)
+    assert score.hits + score.false_alarms == len(predicted)
+    assert score.hits == sum(one.seen.distance > 0.5 for one in predicted)
+    off = sorted(math.dist(one.seen, one.predicted[5].by_row) for one in predicted if one.moved)
     if off:
         assert score.by_row.inches == off[math.ceil(len(off) / 2) - 1]
         assert score.by_row.inches_95 in off

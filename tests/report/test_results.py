@@ -1,33 +1,66 @@
 """Our results beside the paper's: what the figure is made of, and what stands in it."""
 
+import json
 from collections import Counter
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
-from affcli.report.paper import BROKEN_TOOL, EXTENSION_OF_REACH, TOTAL
-from affcli.report.statistics import Spread
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
+from affcli.analysis.comparison import Beside, Results, results_of_many, results_of_single
+from affcli.analysis.paper import BROKEN as IN_PAPER
+from affcli.analysis.paper import EXTENSION_OF_REACH, GOALS, TOOLS, TOTAL
+from affcli.analysis.statistics import Spread
+from affcli.core.results import TrialResult
+from affcli.core.specs import Protocol
+from affcli.core.trial import Outcome
 from affcli.report.figures.canvas import INK, SKY, TWO_COLUMNS, VERMILION, encoded
 from affcli.report.figures.results import results_figure
-from affcli.report.reproduction import Reproduction
-from affcli.report.results import (
-    Beside,
-    Results,
-    SingleRobots,
-    papers_counts,
-    results_of_many,
-    results_of_single,
-)
-from tests.report.hand_made import FOUR_ROBOTS, MANY_ROBOTS
+from affcli.report.results import results_title
+from tests.report.hand_made import FOUR_ROBOTS, MANY_ROBOTS, TASK_SET, session_of
 
-CELLS = [(tool, goal) for tool in EXTENSION_OF_REACH for goal in (1, 2, 3, 4)]
-ALL_SOLVED = SingleRobots(dict.fromkeys(CELLS, (4, 4)), (15, 16), "one robot a tool: run 1")
+
+def result(
+    tool: str, goal: str, start: int, *, solved: bool = True, shape: str | None = None, **more: Any
+) -> TrialResult:
+    """Return how a trial of run 1 ended."""
+    which: dict[str, Any] = {
+        "id": 1,
+        "session_kind": "break-tool" if shape else "solve",
+        "session_id": 1,
+        "run_id": 1,
+        "robot": 0,
+        "protocol": Protocol.TOOL_ADAPTATION if shape else Protocol.EXTENSION_OF_REACH,
+        "task_set": TASK_SET,
+        "planner": "nested-query",
+        "sensor": "noisy",
+        "outcome": Outcome.SOLVED if solved else Outcome.STEP_LIMIT,
+        "steps": 3,
+        "robot_seconds": 20.0,
+    }
+    return TrialResult(
+        **(which | more), tool=tool, shape=shape or tool, goal=goal, start=str(start)
+    )
+
+
+SOLVED = [result(tool, goal, start) for tool, goal in EXTENSION_OF_REACH for start in range(1, 5)]
+BROKEN = [
+    result("t-hook", goal, start, shape="l-hook", solved=(goal, start) != ("1", 1))
+    for goal in GOALS
+    for start in range(1, 5)
+]
+
+
+def single(whole: list[TrialResult], broken: list[TrialResult]) -> Results:
+    found = results_of_single(whole, broken)
+    assert found is not None
+    return found
 
 
 def points(line: Line2D) -> list[tuple[float, float]]:
@@ -56,16 +89,16 @@ def words_in(figure: Figure) -> set[str]:
 
 def test_each_cell_has_the_paper_s_count_and_every_robot_s() -> None:
     results = results_of_many(MANY_ROBOTS)
-    assert list(results.cells) == CELLS == list(papers_counts())
+    assert list(results.cells) == list(EXTENSION_OF_REACH)
     for (tool, goal), cell in results.cells.items():
-        assert cell.paper == EXTENSION_OF_REACH[tool][goal - 1]
+        assert cell.paper == EXTENSION_OF_REACH[tool, goal]
         assert cell.counts == MANY_ROBOTS.cells[tool, goal]
         assert cell.spread == Spread.of(cell.counts)
     assert results.total is not None
     assert (results.total.paper, results.total.tried) == (TOTAL, 80)
     assert list(results.total.counts) == MANY_ROBOTS.totals
     assert results.broken is not None
-    assert (results.broken.paper, results.broken.tried) == (BROKEN_TOOL, 16)
+    assert (results.broken.paper, results.broken.tried) == (IN_PAPER, 16)
 
 
 def test_the_figure_shows_means_intervals_and_the_paper_s_counts() -> None:
@@ -74,9 +107,9 @@ def test_the_figure_shows_means_intervals_and_the_paper_s_counts() -> None:
     *goals, total, broken = figure.axes
     assert figure.get_size_inches()[0] == TWO_COLUMNS
     assert [axes.get_title() for axes in goals] == ["goal 1", "goal 2", "goal 3", "goal 4"]
-    assert [label.get_text() for label in goals[0].get_yticklabels()] == list(EXTENSION_OF_REACH)
-    for goal, axes in enumerate(goals, 1):
-        rows = [results.cells[tool, goal] for tool in EXTENSION_OF_REACH]
+    assert [label.get_text() for label in goals[0].get_yticklabels()] == list(TOOLS)
+    for goal, axes in zip(GOALS, goals, strict=True):
+        rows = [results.cells[tool, goal] for tool in TOOLS]
         assert [x for x, _ in marks(axes, VERMILION, "D")] == [cell.paper for cell in rows]
         assert marks(axes, INK, "o") == [(cell.mean, y) for y, cell in enumerate(rows)]
         for y, cell in enumerate(rows):
@@ -92,10 +125,10 @@ def test_the_figure_shows_means_intervals_and_the_paper_s_counts() -> None:
 def test_counts_of_the_paper_that_lie_outside_are_hollow() -> None:
     results = results_of_many(MANY_ROBOTS)
     figure = results_figure(results)
-    for goal, axes in enumerate(figure.axes[:4], 1):
+    for goal, axes in zip(GOALS, figure.axes[:4], strict=True):
         outside = [
-            not Spread.of(results.cells[tool, goal].counts).holds(counts[goal - 1])
-            for tool, counts in EXTENSION_OF_REACH.items()
+            not Spread.of(results.cells[tool, goal].counts).holds(EXTENSION_OF_REACH[tool, goal])
+            for tool in TOOLS
         ]
         diamonds = [line for line in axes.lines if line.get_marker() == "D"]
         assert [line.get_markerfacecolor() == "white" for line in diamonds] == outside
@@ -108,7 +141,7 @@ def test_intervals_are_for_twenty_robots_or_more() -> None:
     words = words_in(figure)
     assert not {"mean with its 95 % interval", "central 95 % of robots"} & words
     assert any("too few robots for intervals (20 or more)" in text for text in words)
-    counts = Counter(FOUR_ROBOTS.cells["stick", 1])
+    counts = Counter(FOUR_ROBOTS.cells["stick", "1"])
     dots = {
         x: line.get_markersize()
         for line in figure.axes[0].lines
@@ -124,7 +157,7 @@ def test_one_robot_is_a_dot() -> None:
     cells = {cell: counts[:1] for cell, counts in FOUR_ROBOTS.cells.items()}
     one = replace(FOUR_ROBOTS, robots=1, cells=cells, broken=[14])
     results = results_of_many(one)
-    assert results.title.startswith("1 robot, ")
+    assert results_title(results).startswith("1 robot, ")
     assert {"the paper", "one robot"} <= words_in(results_figure(results))
 
 
@@ -136,12 +169,12 @@ def test_any_number_of_robots_can_be_drawn(robots: int) -> None:
     cells = {cell: repeated(list(counts)) for cell, counts in FOUR_ROBOTS.cells.items()}
     many = replace(FOUR_ROBOTS, robots=robots, cells=cells, broken=repeated([14, 15, 15, 16]))
     results = results_of_many(many)
-    assert (results.cells["stick", 1].spread is None) == (robots < 20)
+    assert (results.cells["stick", "1"].spread is None) == (robots < 20)
     assert len(results_figure(results).axes) == 6
 
 
 def test_single_robots_have_what_they_tried() -> None:
-    figure = results_figure(results_of_single(ALL_SOLVED))
+    figure = results_figure(single(SOLVED, BROKEN))
     *goals, total, broken = figure.axes
     for axes in goals:
         assert marks(axes, INK, "o") == [(4.0, y) for y in range(5)]
@@ -151,8 +184,9 @@ def test_single_robots_have_what_they_tried() -> None:
 
 
 def test_where_not_all_starts_were_tried_it_says_how_many() -> None:
-    few = SingleRobots({("stick", 2): (1, 3)}, (0, 0), "one robot a tool: run 1")
-    results = results_of_single(few)
+    some = [result("stick", "2", start, solved=start == 1) for start in (1, 2, 3)]
+    results = single(some, BROKEN[:15])
+    assert results_title(results) == "one robot a tool: run 1 (noisy)"
     assert results.total is None
     assert results.broken is None
     *goals, total, broken = results_figure(results).axes
@@ -165,7 +199,8 @@ def test_where_not_all_starts_were_tried_it_says_how_many() -> None:
 
 
 def test_dollars_are_letters() -> None:
-    strange: Reproduction = replace(MANY_ROBOTS, settings="$\\frac{1}{ = 0.45")
+    settings = json.dumps({"$\\frac{1}{": 0.45})
+    strange = replace(MANY_ROBOTS, session=session_of(5, settings=settings))
     assert encoded(results_figure(results_of_many(strange)), ".svg").startswith(b"<?xml")
 
 
@@ -177,7 +212,7 @@ def test_any_number_of_goals_and_tools_stands_in_rows_that_fit() -> None:
         for goal in range(1, 10)
         if (n, goal) != (6, 9)
     }
-    figure = results_figure(Results("two robots", "", None, 2, cells, None, None))
+    figure = results_figure(Results(session_of(5), 2, {}, cells, None, None))
     panels = {axes.get_title(): axes for axes in figure.axes}
     assert set(panels) == {*(f"goal {n}" for n in range(1, 10)), "all trials", "broken tool"}
     for goal in range(1, 10):
@@ -187,3 +222,20 @@ def test_any_number_of_goals_and_tools_stands_in_rows_that_fit() -> None:
     figure.draw_without_rendering()
     boxes = [axes.get_window_extent() for axes in figure.axes]
     assert all(box.width > 0.6 * figure.dpi < 1.2 * box.height for box in boxes[:-2])
+
+
+def test_of_each_start_the_latest_trial_counts_and_only_the_paper_s() -> None:
+    again = [
+        result("stick", "2", 1, solved=False, run_id=7),
+        result("stick", "2", 1, run_id=8, sensor="camera"),
+        result("stick", "2", 2, run_id=8, outcome=Outcome.INVALID),
+        result("stick", "2", 3, planner="nested-query:share=0.05"),
+        result("stick", "5", 1),
+        result("stick", "2", 4, task_set="far-corners"),
+        result("spoon", "2", 1),
+    ]
+    found = single(again, [])
+    assert (found.cells["stick", "2"].counts, found.cells["stick", "2"].tried) == ([1], 1)
+    assert sum(cell.tried for cell in found.cells.values()) == 1
+    assert results_title(found) == "one robot a tool: run 8 (camera)"
+    assert results_of_single(again[3:], BROKEN) is None

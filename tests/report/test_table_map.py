@@ -11,14 +11,15 @@ from rich.text import Text
 from affcli.config import Settings
 from affcli.core.geometry import Point, Pose
 from affcli.core.scene import Scene
-from affcli.core.task import goal_regions
-from affcli.core.tool import PUCK_COLOR, TOOL_PARTS, paper_tools
+from affcli.core.tool import PUCK_COLOR
 from affcli.core.workspace import PuckGeometry, ToolGeometry, Workspace
 from affcli.report.table_map import EDGE, GOAL, PATH, PUCK, TOOL, Layer, View, table_map
+from affcli.simulation.tasks.extension_of_reach import goal_regions
+from affcli.simulation.tools.paper import TOOL_PARTS, paper_tools
 
 WORKSPACE = Settings().workspace
 TABLE = WORKSPACE.table
-AWAY = Point(0.0, 12.0)
+AWAY = Pose(0.0, 12.0)
 """Where the wrist is out of the way of what lies to the left and the right."""
 
 widths = st.integers(20, 120)
@@ -28,15 +29,16 @@ on_table = st.builds(
     st.floats(-TABLE.half_width, TABLE.half_width),
     st.floats(TABLE.near, TABLE.far),
 )
+wrists = on_table.map(lambda at: Pose(*at))
 tools = st.sampled_from(sorted(TOOL_PARTS))
 
 
 def scene(
     puck: Point = Point(0.0, 22.4),
     *,
-    wrist: Point = AWAY,
+    wrist: Pose = AWAY,
     tool: str = "stick",
-    goal: int | None = None,
+    goal: str | None = None,
     lift: float = 0.0,
     workspace: Workspace = WORKSPACE,
 ) -> Scene:
@@ -119,9 +121,9 @@ def test_a_puck_of_any_size_is_seen(puck: Point, width: int, radius: float) -> N
     assert cell(view, puck) in cells_of(drawn(scene(puck), view, workspace=workspace), PUCK)
 
 
-@given(on_table, on_table, tools, widths, st.sampled_from([0.0, 1.6]))
+@given(wrists, on_table, tools, widths, st.sampled_from([0.0, 1.6]))
 def test_a_tool_is_seen_along_all_its_parts(
-    wrist: Point, puck: Point, tool: str, width: int, lift: float
+    wrist: Pose, puck: Point, tool: str, width: int, lift: float
 ) -> None:
     """The middle of each part and of each of its edges, but where the puck lies over it."""
     view = View.of(WORKSPACE, width, 40)
@@ -137,8 +139,8 @@ def test_a_tool_is_seen_along_all_its_parts(
                 assert set(near) & {TOOL.letter, PUCK.letter}, (x, y)
 
 
-@given(on_table, widths, st.floats(1e-3, 0.4))
-def test_a_tool_of_thin_wood_is_seen_too(wrist: Point, width: int, wood: float) -> None:
+@given(wrists, widths, st.floats(1e-3, 0.4))
+def test_a_tool_of_thin_wood_is_seen_too(wrist: Pose, width: int, wood: float) -> None:
     """No thinner than a dot: the handle is without gaps."""
     workspace = replace(WORKSPACE, tools=ToolGeometry(part_width=wood))
     view = View.of(workspace, width, 40)
@@ -153,12 +155,12 @@ def test_a_tool_of_thin_wood_is_seen_too(wrist: Point, width: int, wood: float) 
         y += 0.5
 
 
-@given(on_table, widths, st.sampled_from([1, 2, 3, 4]))
-def test_a_goal_is_an_outline_around_its_middle(puck: Point, width: int, goal: int) -> None:
+@given(on_table, widths, st.sampled_from(["1", "2", "3", "4"]))
+def test_a_goal_is_an_outline_around_its_middle(puck: Point, width: int, goal: str) -> None:
     """What lies in it is seen."""
     view = View.of(WORKSPACE, width, 40)
     region = goal_regions(WORKSPACE.layout)[goal]
-    shown = scene(puck, wrist=Point(0.0, -20.0), goal=goal)
+    shown = scene(puck, wrist=Pose(0.0, -20.0), goal=goal)
     assume(math.dist(puck, region.center) > 6.0)
     cells = cells_of(drawn(shown, view), GOAL)
     reach = view.inches * 2.5
@@ -175,7 +177,7 @@ def test_the_path_is_seen_under_what_stands_on_it(
     path: list[Point], puck: Point, width: int
 ) -> None:
     view = View.of(WORKSPACE, width, 40)
-    shown = scene(puck, tool="t-hook", goal=2)
+    shown = scene(puck, tool="t-hook", goal="2")
     lines = drawn(shown, view, tuple(path))
     for place in path:
         row, column = cell(view, place)
@@ -200,19 +202,19 @@ def test_what_lies_beyond_the_map_is_not_drawn() -> None:
 
 @given(
     on_table,
-    on_table,
+    wrists,
     tools,
     widths,
-    st.sampled_from([None, 1, 2, 3, 4]),
+    st.sampled_from([None, "1", "2", "3", "4"]),
     st.sampled_from([0.0, 1.6]),
     st.lists(on_table, max_size=5),
 )
 def test_plain_letters_and_braille_agree(
     puck: Point,
-    wrist: Point,
+    wrist: Pose,
     tool: str,
     width: int,
-    goal: int | None,
+    goal: str | None,
     lift: float,
     path: list[Point],
 ) -> None:
@@ -235,7 +237,7 @@ def spans(text: Text) -> list[tuple[int, int, str]]:
 
 def test_each_thing_has_its_style() -> None:
     view = View.of(WORKSPACE, 60, 40)
-    shown = scene(Point(10.0, 22.4), wrist=Point(-8.0, 14.0), goal=2)
+    shown = scene(Point(10.0, 22.4), wrist=Pose(-8.0, 14.0), goal="2")
     drawn_map = table_map(shown, WORKSPACE, [Point(5.0, 14.0)], view, braille=False)
     layers = {one.letter: one.style for one in (EDGE, GOAL, PATH, TOOL, PUCK)}
     seen = {drawn_map.plain[span.start]: span.style for span in drawn_map.spans}

@@ -10,15 +10,13 @@ import pytest
 from rich.console import Console, RenderableType
 from syrupy.assertion import SnapshotAssertion
 
-from affcli.core.geometry import Point
-from affcli.core.task import GoalRegion
 from affcli.core.trial import Outcome
 from affcli.report.breaking import broken_tables
 from affcli.report.learning import groups_table, learned_table
 from affcli.report.overview import overview_tables
 from affcli.report.reproduction import failures_table, reproduction_tables
 from affcli.report.rows import row_tables, rows_table
-from affcli.report.trials import counts_table, explain_trial, solve_table
+from affcli.report.trials import counts_tables, explain_trial, solve_table
 from tests.factories import learning_spec
 from tests.report import hand_made
 from tests.report.hand_made import (
@@ -29,9 +27,9 @@ from tests.report.hand_made import (
     OVERVIEW,
     RUNS,
     WHOLE,
-    Row,
     row,
     spec,
+    stored_row,
     tried,
 )
 
@@ -47,10 +45,8 @@ SOLVE = [
     for start, (outcome, steps) in enumerate(ends, start=1)
     for trial in [hand_made.trial(spec(start, tool=tool), outcome, steps_taken=steps)]
 ]
-GOAL = GoalRegion(3, Point(-12.0, 24.0), 2.0)
-MISSING_SIDE = 3.5
-"""What the L-hook lacks of the T-hook lies to the right."""
 
+USED = {"stick": replace(RUNS[1], id=2), "t-hook": replace(RUNS[0], id=7)}
 EXPLAINED = hand_made.trial(
     spec(2),
     NO_ROW,
@@ -61,9 +57,9 @@ EXPLAINED = hand_made.trial(
 )
 
 ROWS = [
-    (Row(9, 1, "t-hook", row(7)), "left bar"),
-    (Row(12345, 1, "t-hook", row(33, offset_x=5.04, used=12, successful=6)), "right hook"),
-    (Row(12346, 22, "\x1b[31m=cmd", row(34, offset_x=-0.04)), "handle"),
+    (stored_row(9, 1, "t-hook", row(7)), "left bar"),
+    (stored_row(12345, 1, "t-hook", row(33, offset_x=5.04, used=12, successful=6)), "right hook"),
+    (stored_row(12346, 22, "\x1b[31m=cmd", row(34, offset_x=-0.04)), "handle"),
 ]
 HISTORY = [
     tried(3, hand_made.step(1, row(7)), spec(2)),
@@ -74,15 +70,14 @@ HISTORY = [
 
 TABLES: dict[str, tuple[RenderableType, ...]] = {
     "groups": (groups_table(RUNS[0], GROUPS),),
-    "learned": (learned_table([(RUNS[0], "defaults"), (RUNS[1], "sensor.position_noise = 0.12")]),),
-    "solve": (solve_table(2, SOLVE, {"stick": 2, "t-hook": 7}),),
-    "solve, one start": (solve_table(3, SOLVE[5:6], {"stick": 2, "t-hook": 7}),),
+    "learned": (learned_table(RUNS),),
+    "solve": (solve_table(SOLVE, USED),),
+    "solve, one start": (solve_table(SOLVE[5:6], USED),),
     "explain": (
         explain_trial(
             EXPLAINED.spec,
             EXPLAINED.end,
             [(step.record.row.step, step.record) for step in EXPLAINED.steps],
-            GOAL,
         ),
     ),
     "rows": (rows_table(ROWS[:2], "Rows of run 1 (t-hook)", with_runs=False),),
@@ -92,12 +87,12 @@ TABLES: dict[str, tuple[RenderableType, ...]] = {
     "a row of a robot, never tried": row_tables(
         *ROWS[1], replace(RUNS[0], session_id=4, spec=learning_spec(seed=1000, robot=17)), []
     ),
-    "counts": (counts_table(OVERVIEW.solved),),
-    "broken": broken_tables("l-hook", MISSING_SIDE, [*BROKEN, *WHOLE]),
-    "failures": (failures_table({"step limit": 2, "no row left": 2, "invalid": 31}, 80),),
+    "counts": tuple(counts_tables(OVERVIEW.solved, {run.id: run for run in RUNS})),
+    "broken": broken_tables(RUNS[0], [*BROKEN, *WHOLE]),
+    "failures": (failures_table({"invalid": 31, "no row left": 2, "step limit": 2}, 80),),
     "no failures": (failures_table({}, 16),),
-    "reproduction": reproduction_tables(FOUR_ROBOTS),
-    "reproduction, many robots": reproduction_tables(MANY_ROBOTS),
+    "reproduction": tuple(reproduction_tables(FOUR_ROBOTS)),
+    "reproduction, many robots": tuple(reproduction_tables(MANY_ROBOTS)),
     "overview": tuple(overview_tables(OVERVIEW)),
 }
 

@@ -3,25 +3,23 @@
 from dataclasses import replace
 
 import pytest
-from affcli.report.statistics import wilson
 from syrupy.assertion import SnapshotAssertion
 
-from affcli.core.behavior import CONTRACT_ARM, SLIDE_ARM_LEFT, Execution, ExecutionStatus
-from affcli.core.geometry import Point
+from affcli.analysis.statistics import wilson
+from affcli.analysis.verification import JudgedTry, Verification
+from affcli.behaviors.moving import CONTRACT_ARM, SLIDE_ARM_LEFT
+from affcli.core.affordance import PROBABILITY_THRESHOLD
+from affcli.core.behavior import Execution, ExecutionStatus
+from affcli.core.geometry import Point, Pose
 from affcli.core.observation import movement
-from affcli.core.verification import ReplicationRecord, VerificationSpec
-from affcli.report.verification import (
-    MOST_ROWS,
-    Checked,
-    Verification,
-    verification_json,
-    verification_tables,
-)
-from tests.factories import affordance, observation
+from affcli.core.specs import VerificationSpec
+from affcli.core.verification import ReplicationRecord
+from affcli.report.verification import MOST_ROWS, verification_json, verification_tables
+from tests.factories import affordance, observation, tool_named
 from tests.report.drawn import drawn
 from tests.report.hand_made import call
 
-SPEC = VerificationSpec("t-hook", "t-hook", 0, 0, "noisy", 200, until_verdict=False)
+SPEC = VerificationSpec("t-hook", tool_named("t-hook"), 0, 0, "noisy", 200, until_verdict=False)
 
 
 def checked(
@@ -33,7 +31,7 @@ def checked(
     region: str = "left hook",
     row: int | None = None,
     blocked: bool = False,
-) -> Checked:
+) -> JudgedTry:
     """Return a try of a row that slides the attractor, or pulls it if near the right hook."""
     right = region == "right hook"
     behavior = call(CONTRACT_ARM, 5) if right else call(SLIDE_ARM_LEFT, 2)
@@ -43,7 +41,7 @@ def checked(
     seen = moved if replicated else (0.1, 0.2)
     end = tried.start if blocked else observation(Point(at.x + seen[0], at.y + seen[1]))
     status = ExecutionStatus.BLOCKED if blocked else ExecutionStatus.DONE
-    placing = Execution(behavior, status, Point(0.0, 17.0), Point(0.0, 16.0), 2.0)
+    placing = Execution(behavior, status, Pose(0.0, 17.0), Pose(0.0, 16.0), 2.0)
     record = ReplicationRecord(
         row=tried,
         placing=placing,
@@ -53,13 +51,15 @@ def checked(
         expected=tried.expected_movement,
         seen=movement(tried.start, end),
         replicated=replicated and not blocked,
+        regrasped=False,
+        threshold=PROBABILITY_THRESHOLD,
         number=number,
         clock=4.0 * number,
     )
-    return Checked(record, row or number, region)
+    return JudgedTry(record, row or number, region)
 
 
-def of(tries: list[Checked], *, updated: bool = False) -> Verification:
+def of(tries: list[JudgedTry], *, updated: bool = False) -> Verification:
     return Verification(3, replace(SPEC, tries=len(tries)), 150, updated, tuple(tries))
 
 

@@ -11,10 +11,9 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator, PercentFormatter
 
 from affcli.analysis.adaptation import AdaptationCourse, MeanProbability, Share
-from affcli.report.adaptation import course_title
+from affcli.report.adaptation import course_note, course_title
 from affcli.report.figures.canvas import BLUE, FAINT, ONE_COLUMN, VERMILION, canvas, head
 from affcli.report.figures.key import draw_key
-from affcli.report.results import few_robots_note
 
 HEIGHT = 3.9
 """Of the figure (in)."""
@@ -37,7 +36,7 @@ def adaptation_figure(course: AdaptationCourse) -> Figure:
         probability.set_xlim(-0.5, course.shares[-1].number + 0.5)
         probability.xaxis.set_major_locator(MaxNLocator(7, integer=True, steps=[1, 2, 5, 10]))
         draw_key(figure, _key(course))
-        head(figure, course_title(course), few_robots_note(course.session.spec.robots))
+        head(figure, course_title(course), course_note(course))
     return figure
 
 

@@ -16,7 +16,7 @@ from affcli.analysis.paper import STARTS
 from affcli.report.figures.canvas import INK, PALE, SKY, TWO_COLUMNS, VERMILION, canvas, head
 from affcli.report.figures.key import draw_key
 from affcli.report.figures.maps import columns_for
-from affcli.report.results import few_robots_note, results_title
+from affcli.report.results import results_note, results_title
 
 MOST_BESIDE = 4
 """Goals in a row of the page."""
@@ -56,7 +56,7 @@ def results_figure(results: Results) -> Figure:
         for row, (name, beside) in enumerate(sums):
             _draw_sum(figure.add_subplot(grid[row, across]), name, beside)
         draw_key(figure, _key(results))
-        words = (results_title(results), few_robots_note(results.robots))
+        words = (results_title(results), results_note(results))
         head(figure, "; ".join(filter(None, words)))
     return figure
 

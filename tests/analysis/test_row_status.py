@@ -6,8 +6,17 @@ from affcli.report.fates import MATCHING_DISTANCE, Fate, around_trial, compared,
 from hypothesis import given
 from hypothesis import strategies as st
 
+from affcli.analysis.row_status import (
+    MATCHING_DISTANCE,
+    RowStatus,
+    around_trial,
+    compared,
+    current,
+    same_effect,
+)
+from affcli.behaviors.moving import CONTRACT_ARM, EXTEND_ARM
 from affcli.core.affordance import Affordance
-from affcli.core.behavior import CONTRACT_ARM, EXTEND_ARM, BehaviorCall
+from affcli.core.behavior import BehaviorCall
 from affcli.core.geometry import Point
 from tests.factories import affordance
 
@@ -61,18 +70,18 @@ def live(row: Affordance) -> bool:
 def test_a_row_is_kept_when_a_live_row_of_the_other_table_is_its_partner(
     before: list[Affordance], after: list[Affordance]
 ) -> None:
-    for rows, others, fates, alone in (
-        (before, after, compared(before, after)[0], Fate.LOST),
-        (after, before, compared(before, after)[1], Fate.WON),
+    for rows, others, statuses, alone in (
+        (before, after, compared(before, after)[0], RowStatus.LOST),
+        (after, before, compared(before, after)[1], RowStatus.WON),
     ):
-        assert len(fates) == len(rows)
-        for row, fate in zip(rows, fates, strict=True):
+        assert len(statuses) == len(rows)
+        for row, status in zip(rows, statuses, strict=True):
             if not live(row):
-                assert fate is Fate.EXCLUDED
+                assert status is RowStatus.EXCLUDED
             elif any(partners(row, other) and live(other) for other in others):
-                assert fate is Fate.KEPT
+                assert status is RowStatus.KEPT
             else:
-                assert fate is alone
+                assert status is alone
 
 
 @given(tables, tables)
@@ -80,15 +89,15 @@ def test_what_one_way_is_lost_is_won_the_other_way(
     one: list[Affordance], other: list[Affordance]
 ) -> None:
     there, back = compared(one, other), compared(other, one)
-    turned = {Fate.LOST: Fate.WON, Fate.WON: Fate.LOST}
-    assert [turned.get(fate, fate) for fate in back[1]] == there[0]
-    assert [turned.get(fate, fate) for fate in back[0]] == there[1]
+    turned = {RowStatus.LOST: RowStatus.WON, RowStatus.WON: RowStatus.LOST}
+    assert [turned.get(status, status) for status in back[1]] == there[0]
+    assert [turned.get(status, status) for status in back[0]] == there[1]
 
 
 @given(tables)
 def test_a_table_loses_nothing_against_itself(table: list[Affordance]) -> None:
-    for fates in compared(table, table):
-        assert set(fates) <= {Fate.KEPT, Fate.EXCLUDED}
+    for statuses in compared(table, table):
+        assert set(statuses) <= {RowStatus.KEPT, RowStatus.EXCLUDED}
 
 
 @given(tables, tables, tables)
@@ -97,7 +106,7 @@ def test_more_rows_in_the_other_table_never_lose_a_kept_one(
 ) -> None:
     few, many = compared(before, after)[0], compared(before, [*after, *more])[0]
     kept = zip(few, many, strict=True)
-    assert all(now_kept is Fate.KEPT for was, now_kept in kept if was is Fate.KEPT)
+    assert all(now_kept is RowStatus.KEPT for was, now_kept in kept if was is RowStatus.KEPT)
 
 
 def test_partners_start_near_each_other_move_alike_and_come_of_the_same_behavior() -> None:
@@ -126,7 +135,7 @@ def test_partners_start_near_each_other_move_alike_and_come_of_the_same_behavior
 def test_a_row_counts_while_its_probability_is_greater_than_one_half(
     table: list[Affordance],
 ) -> None:
-    assert [fate is Fate.ROW for fate in now(table)] == [live(row) for row in table]
+    assert [status is RowStatus.LIVE for status in current(table)] == [live(row) for row in table]
 
 
 @given(st.integers(0, 30), st.data())
@@ -139,8 +148,8 @@ def test_a_trial_keeps_a_row_or_loses_it_unless_it_was_excluded_before(
     died = data.draw(some) - excluded
     before, after = around_trial(ids, excluded, died)
     for one, was, became in zip(ids, before, after, strict=True):
-        assert was is (Fate.EXCLUDED if one in excluded else Fate.ROW)
+        assert was is (RowStatus.EXCLUDED if one in excluded else RowStatus.LIVE)
         if one in died:
-            assert became is Fate.LOST
+            assert became is RowStatus.LOST
         else:
-            assert became is (Fate.EXCLUDED if one in excluded else Fate.KEPT)
+            assert became is (RowStatus.EXCLUDED if one in excluded else RowStatus.KEPT)

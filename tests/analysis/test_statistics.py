@@ -5,10 +5,11 @@ from fractions import Fraction
 from statistics import fmean
 
 import pytest
-from affcli.report.statistics import HIGH, LOW, Spread, quantile, wilson
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
+
+from affcli.analysis.statistics import HIGH, LOW, Spread, quantile, t95, wilson
 
 successes = st.lists(st.integers(0, 80), min_size=1, max_size=250)
 
@@ -50,16 +51,22 @@ def test_the_papers_count_is_inside_from_low_to_high(counts: list[int], paper: i
 def test_the_interval_of_the_mean_is_scipys(counts: list[int]) -> None:
     spread = Spread.of(counts)
     assert spread.mean == pytest.approx(fmean(counts))
+    assert spread.mean_ci is not None
     error = stats.sem(counts)
     if error == 0:
         assert spread.mean_ci == (spread.mean, spread.mean)
     else:
-        theirs = stats.norm.interval(0.95, loc=fmean(counts), scale=error)
-        assert spread.mean_ci == pytest.approx(theirs)
+        theirs = stats.t.interval(0.95, len(counts) - 1, loc=fmean(counts), scale=error)
+        assert spread.mean_ci == pytest.approx(theirs, abs=0.002 * error * 3.2)
+
+
+@pytest.mark.parametrize("freedom", [1, 2, 3, 4, 5, 7, 15, 19, 30, 99, 1000])
+def test_the_quantile_of_students_t_is_scipys(freedom: int) -> None:
+    assert t95(freedom) == pytest.approx(stats.t.ppf(0.975, freedom), rel=0.002)
 
 
 def test_one_robot_has_no_spread() -> None:
-    assert Spread.of([3]) == Spread(3.0, (3.0, 3.0), 3, 3)
+    assert Spread.of([3]) == Spread(3.0, None, 3, 3)
 
 
 def test_no_robots_are_an_error() -> None:

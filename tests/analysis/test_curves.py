@@ -1,24 +1,20 @@
 """How learning went over time: sums of what each interval brought."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import replace
 from statistics import fmean
 
 import pytest
-from affcli.report.statistics import HIGH, LOW, quantile
 from hypothesis import given
 from hypothesis import strategies as st
 
-from affcli.report.curves import ENOUGH_BEHAVIORS, Band, Curve, ToolCurves
+from affcli.analysis.curves import ENOUGH_BEHAVIORS, Band, Curve, ToolCurves
+from affcli.analysis.statistics import HIGH, LOW, quantile
+from affcli.core.results import LearningInterval
+from tests.factories import learning_spec
+from tests.report.hand_made import learned_run
 
-
-@dataclass(frozen=True, slots=True)
-class Did:
-    """What a run did in an interval, as the store gives it."""
-
-    number: int
-    behaviors: int
-    effects: int
+RUN = learned_run(1, learning_spec())
 
 
 @st.composite
@@ -29,11 +25,12 @@ def runs(draw: st.DrawFn) -> list[tuple[float, bool]]:
     return [(clock, draw(st.booleans())) for clock in clocks]
 
 
-def intervals(run: list[tuple[float, bool]], seconds: float) -> list[Did]:
+def intervals(run: list[tuple[float, bool]], seconds: float) -> list[LearningInterval]:
     """Count as the database does."""
     numbers = sorted({int(clock / seconds) for clock, _ in run})
     return [
-        Did(
+        LearningInterval(
+            1,
             number,
             sum(int(clock / seconds) == number for clock, _ in run),
             sum(effect and int(clock / seconds) == number for clock, effect in run),
@@ -47,7 +44,7 @@ def test_a_curve_counts_what_was_done_by_then(
     run: list[tuple[float, bool]], seconds: float
 ) -> None:
     end = run[-1][0]
-    curve = Curve.of("a run", intervals(run, seconds), seconds, end)
+    curve = Curve.of(replace(RUN, robot_seconds=end), intervals(run, seconds), seconds)
     assert len(curve.minutes) == len(curve.rows) == len(curve.share)
     assert (curve.minutes[0], curve.rows[0]) == (0.0, 0.0)
     assert curve.minutes[-1] == pytest.approx(end / 60.0)
@@ -68,7 +65,10 @@ def test_robots_are_compared_while_all_of_them_learn(
     robots: list[list[tuple[float, bool]]],
 ) -> None:
     seconds = max(run[-1][0] for run in robots) / 10
-    curves = [Curve.of("", intervals(run, seconds), seconds, run[-1][0]) for run in robots]
+    curves = [
+        Curve.of(replace(RUN, robot_seconds=run[-1][0]), intervals(run, seconds), seconds)
+        for run in robots
+    ]
     tool = ToolCurves.of("t-hook", curves)
     assert tool.robots == len(robots)
     assert len(tool.minutes) == len(tool.rows.mean) == len(tool.share.mean)
