@@ -1,7 +1,7 @@
 """The numbers that results were published with; a change of one is a change of all results.
 
-A default that changes is entered in `affcli.config.CHANGED`, and here, and then stored runs keep the
-former one.
+A default that changes is entered in `affcli.config.CHANGED`, and here; stored runs keep the former
+one.
 """
 
 from itertools import product
