@@ -8,6 +8,13 @@ WORKERS =
 # What the browser tests drive, by the names that systems give it; the same as in tests/browser.
 BROWSERS = chromium chromium-browser google-chrome
 
+# What `make quick` runs: all rooms but the camera, the store and the command line, no drawings.
+DRAWN = $(wildcard tests/report/test_*figure*.py tests/report/test_*film*.py tests/report/test_page*.py \
+  tests/report/test_table_map.py)
+QUICK = $(wildcard tests/analysis tests/exploration) tests/behaviors tests/conformance tests/core tests/planning \
+  tests/procedures tests/simulation $(filter-out $(DRAWN),$(wildcard tests/report/test_*.py)) \
+  tests/test_config.py tests/test_golden.py tests/test_quoted.py tests/test_registry.py
+
 VENV := .venv
 AFFCLI := $(VENV)/bin/affcli
 PIP := $(VENV)/bin/python -m pip --disable-pip-version-check
@@ -21,7 +28,7 @@ INSTALLED_BROWSER := $(VENV)/.installed-browser
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help demo test test-browser torture check reproduce bench clean FORCE
+.PHONY: help demo quick test test-browser torture check reproduce bench clean FORCE
 
 ## help          list these targets
 help:
@@ -36,6 +43,10 @@ demo: $(INSTALLED)
 	AFFCLI_DB=demo.db $(AFFCLI) report
 	@printf '\nThe database: %s\nA query to try:\n  %s\n' '$(CURDIR)/demo.db' \
 	  '$(AFFCLI) sql --db demo.db "select exploratory_behavior, exploratory_params, round(movement, 1) as inches, round(direction) as degrees, times_successful, times_used from affordance_table order by times_used desc limit 5"'
+
+## quick         the tests of what robots do and of what is said of it, in a minute; no processes
+quick: $(INSTALLED_DEV)
+	$(VENV)/bin/pytest --numprocesses auto --dist loadfile $(QUICK)
 
 ## test          run the tests
 test: $(INSTALLED_DEV)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from affcli.behaviors.grasping import grasp, hold_of
+from affcli.behaviors.grasping import grasp
 from affcli.behaviors.moving import (
     CONTRACT_ARM,
     DIRECTIONS,
@@ -28,7 +28,7 @@ from affcli.core.behavior import (
 )
 from affcli.core.geometry import Point, Pose
 from affcli.core.motion import Slide
-from affcli.core.tool import Hold
+from affcli.core.tool import Hold, hold_of
 from affcli.core.workspace import ToolGeometry
 from tests.factories import observation, places
 

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
@@ -26,8 +25,10 @@ from affcli.core.behavior import (
     ExecutionStatus,
 )
 from affcli.core.geometry import Point, Pose
+from affcli.core.tool import ToolName
 from affcli.core.workspace import Workspace
 from affcli.simulation.arm import joint_angles, reach_at
+from affcli.simulation.robot import SimulatedRobot
 from affcli.simulation.table_world import TableSetting
 from affcli.simulation.tools.paper import TOOL_PARTS
 from affcli.simulation.wrist_motion import GRID, STEP, on_grid
@@ -71,9 +72,9 @@ def call_of(name: BehaviorName, distance: float) -> BehaviorCall:
 
 def do(setting: TableSetting, name: BehaviorName, distance: float) -> Execution:
     """Execute a moving behavior of any distance, in the repertoire or not."""
-    (behavior,) = moving_behavior(name, distance)
-    setting.robot._motions[behavior.call] = behavior.motion
-    return setting.robot.execute(behavior.call, None)
+    behaviors = moving_behavior(name, distance)
+    setting.robot._motions |= SimulatedRobot(setting.table, behaviors)._motions
+    return setting.robot.execute(behaviors[0].call, None)
 
 
 def carry_to(setting: TableSetting, target: Point) -> ExecutionStatus:
@@ -309,7 +310,6 @@ def test_a_behavior_that_the_robot_does_not_have_is_an_error() -> None:
         )
 
 
-@cache
 def mirrored_setting(tool: str, *, mirror: bool) -> TableSetting:
     """Return a setting whose tool is turned over left to right when `mirror` is set."""
     setting = setting_with(tool)
@@ -330,6 +330,10 @@ def mirrored_setting(tool: str, *, mirror: bool) -> TableSetting:
 def test_mirrored_worlds_mirror() -> None:
     """Mirrored inputs give mirrored results within 1e-3 in: sixty behaviors that touch the puck."""
     rng = np.random.default_rng(0)
+    settings_of = {
+        tool: [mirrored_setting(tool, mirror=mirror) for mirror in (False, True)]
+        for tool in sorted(TOOL_PARTS)
+    }
     touched = 0
     while touched < 60:
         tool, name = str(rng.choice(sorted(TOOL_PARTS))), BehaviorName(rng.choice(sorted(OTHER)))
@@ -339,7 +343,7 @@ def test_mirrored_worlds_mirror() -> None:
             wrist.x + rng.uniform(-1.2, 1.2) * WORKSPACE.tools.bar_reach,
             wrist.y + rng.uniform(0.0, 1.2) * WORKSPACE.tools.handle_length,
         )
-        here = mirrored_setting(tool, mirror=False)
+        here, there = settings_of[ToolName(tool)]
         here.table.wrist, here.table.attractor = Pose(*wrist), puck
         if not here.table.clear_of_attractor(Pose(*wrist)):
             continue
@@ -347,7 +351,6 @@ def test_mirrored_worlds_mirror() -> None:
         if here.table.attractor == puck:
             continue
         touched += 1
-        there = mirrored_setting(tool, mirror=True)
         there.table.wrist, there.table.attractor = Pose(-wrist.x, wrist.y), Pose(-puck.x, puck.y)
         mirrored = do(there, OTHER[name], 5.0)
         assert mirrored.status is done.status

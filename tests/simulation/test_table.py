@@ -1,6 +1,7 @@
 """The true state of the table, and what sliding the tool does to the puck."""
 
 import math
+from dataclasses import replace
 
 import pytest
 import shapely
@@ -8,9 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from affcli.config import Settings
-from affcli.core.geometry import Point, Pose
-from affcli.core.tool import PUCK_COLOR
+from affcli.core.geometry import ConvexPolygon, Point, Pose
+from affcli.core.tool import PUCK_COLOR, Hold
 from affcli.simulation.arm import reach_at
+from affcli.simulation.pushing import PushSimulator
 from affcli.simulation.table import Table
 from affcli.simulation.tools.paper import TOOL_PARTS
 from affcli.simulation.wrist_motion import GRID, trapezoid
@@ -148,3 +150,79 @@ def test_the_shape_held_decides_not_its_name() -> None:
     hooked.attractor = puck
     hooked.slide(AHEAD, Point(hooked.wrist.x, hooked.wrist.y + 5.0), FIVE)
     assert math.dist(hooked.attractor.point, puck.point) > 1.0
+
+
+def test_tools_whose_parts_have_the_same_names_do_not_share_their_physics() -> None:
+    """The second is pushed by its own outline, not by that of the first."""
+    table = table_with("stick")
+    thin = table.tool
+    (handle,) = thin.parts
+    wide = replace(thin, parts=(replace(handle, outline=ConvexPolygon.box(-3.0, -1.0, 3.0, 14.6)),))
+    beside = TOOLS.part_width / 2.0 + RADIUS + 0.5
+    table.attractor = puck = in_front(table)._replace(x=beside)
+    start = table.wrist
+    for tool, touches in ((thin, False), (wide, True), (thin, False)):
+        table.put_down(tool)
+        table.wrist, table.attractor = start, puck
+        table.slide(AHEAD, Point(start.x, start.y + 5.0), FIVE)
+        assert (table.attractor != puck) is touches
+
+
+@settings(deadline=None, max_examples=40)
+@given(tools, st.floats(-3.2, 3.2), st.floats(-9.0, 9.0), st.floats(-15.0, 20.0))
+def test_a_turned_wrist_pushes_like_the_turned_outline(
+    tool: str, angle: float, x: float, y: float
+) -> None:
+    """To the bit; the wrist keeps its angle."""
+    turned, plain = table_with(tool), table_with(tool)
+    parts = tuple(replace(p, outline=p.outline.turned(angle)) for p in plain.tool.parts)
+    plain.put_down(replace(plain.tool, parts=parts))
+    turned.wrist = turned.wrist._replace(angle=angle)
+    puck = Pose(turned.wrist.x + x, turned.wrist.y + y)
+    turned.attractor = plain.attractor = puck
+    clear = turned.clear_of_attractor(turned.wrist)
+    assert plain.clear_of_attractor(plain.wrist) is clear
+    for table in (turned, plain) if clear else ():
+        table.slide(AHEAD, Point(table.wrist.x, table.wrist.y + 5.0), FIVE)
+    assert turned.attractor == plain.attractor
+    assert turned.wrist == plain.wrist._replace(angle=angle)
+
+
+@pytest.mark.parametrize("zero", [0.0, -0.0])
+def test_a_wrist_that_is_not_turned_pushes_as_if_there_were_no_angle(zero: float) -> None:
+    table, direct = (
+        table_with("t-hook"),
+        PushSimulator(
+            tool_named("t-hook").outlines, WORKSPACE.puck, WORKSPACE.friction, SETTINGS.physics
+        ),
+    )
+    table.wrist = table.wrist._replace(angle=zero)
+    table.attractor = puck = in_front(table)
+    expected = direct.push(puck, table.wrist.point, AHEAD, FIVE)
+    table.slide(AHEAD, Point(table.wrist.x, table.wrist.y + 5.0), FIVE)
+    assert table.attractor == expected
+
+
+@pytest.mark.parametrize("tool", sorted(TOOL_PARTS))
+def test_a_grasp_farther_up_the_handle_brings_the_tool_nearer_by_as_much(tool: str) -> None:
+    """§5.1: the grasp "takes as a parameter the location of a single grasp point"."""
+    table = table_with(tool)
+    before = table.scene
+    table.take(Hold(TOOLS.handle_below_grasp + 2.0))
+    after = table.scene
+    assert after.wrist == before.wrist
+    for one, other in zip(before.tool.outlines, after.tool.outlines, strict=True):
+        assert [(v.x, v.y - 2.0) for v in one.vertices] == [
+            pytest.approx(tuple(v)) for v in other.vertices
+        ]
+
+
+def test_taken_anew_a_tool_is_held_as_the_last_grasp_says() -> None:
+    """Grasps do not add up: each is told from the tool's own frame."""
+    table = table_with("l-hook")
+    whole = table.tool
+    for point in (3.0, 0.0, 3.0):
+        table.take(Hold(point, 0.5))
+        assert table.tool == whole.held(Hold(point, 0.5))
+    table.take(Hold(TOOLS.handle_below_grasp))
+    assert table.tool == whole

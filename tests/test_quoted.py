@@ -1,0 +1,93 @@
+"""The numbers that results were published with; a change of one is a change of all results.
+
+A default that changes is entered in `affcli.config.CHANGED`, and here; stored runs keep the former
+one.
+"""
+
+from itertools import product
+
+import pytest
+
+from affcli import registry
+from affcli.config import DEFAULTS, Settings
+from affcli.core import affordance, affordance_table, change_detection, verification
+from affcli.core.geometry import Point
+from affcli.planning import nested_query, prediction
+from affcli.simulation.table_world import TableWorld
+from affcli.simulation.worlds import TABLE_VERSION
+
+SETTINGS = {
+    "arm.elbow_max_degrees": 146.0,
+    "arm.flange_height": 1.05,
+    "arm.forearm": 10.0,
+    "arm.lift_height": 1.6,
+    "arm.shoulder_height": 10.0,
+    "arm.upper_arm": 10.0,
+    "arm.wrist_to_flange": 2.0,
+    "babbling.draws": 256,
+    "babbling.offset_x_max": 7.5,
+    "babbling.offset_y_max": 19.2,
+    "babbling.offset_y_min": 6.8,
+    "friction.puck_table": 0.35,
+    "friction.tool_puck": 0.225,
+    "layout.goal_1_y": 15.3,
+    "layout.goal_2_y": 26.8,
+    "layout.goal_half_width": 2.25,
+    "layout.goal_side_x": 12.4,
+    "layout.midline": 22.4,
+    "layout.start_spacing": 6.0,
+    "motion.grasp_time": 5.0,
+    "motion.hold": 0.25,
+    "motion.push_speed": 5.0,
+    "motion.regrasp_time": 8.0,
+    "motion.transfer_speed": 12.5,
+    "puck.mass": 0.165,
+    "puck.radius": 1.5,
+    "sensor.color_noise": 2.4,
+    "sensor.position_noise": 0.008,
+    "table.far": 31.6,
+    "table.half_width": 16.0,
+    "table.near": 11.8,
+    "tools.bar_reach": 5.6,
+    "tools.handle_below_grasp": 1.0,
+    "tools.handle_length": 14.6,
+    "tools.hook_length": 5.3,
+    "tools.part_width": 0.75,
+    "trial.max_steps": 60,
+}
+
+
+@pytest.mark.parametrize(("name", "value"), SETTINGS.items())
+def test_a_setting_has_the_default_that_results_were_published_with(
+    name: str, value: float
+) -> None:
+    assert DEFAULTS == 1
+    assert Settings().values()[name] == value
+
+
+def test_the_rules_of_the_paper_have_its_numbers() -> None:
+    """§5.2: 0.5 in and 40 degrees; §6.2: greater than 1/2, the top 20 %."""
+    assert change_detection.MOVEMENT_THRESHOLD == 0.5
+    assert affordance.REPLICATION_ANGLE_DEGREES == 40.0
+    assert affordance.PROBABILITY_THRESHOLD == 0.5
+    assert nested_query.TOP_SHARE == 0.2
+    planner = registry.planner(registry.component("planners", registry.DEFAULTS["planner"]))
+    assert (planner.angle_degrees, planner.threshold) == (40.0, 0.5)
+
+
+def test_the_choices_where_the_paper_is_silent_have_theirs() -> None:
+    assert affordance_table.COLOR_TOLERANCE == 45.0
+    assert prediction.RADIUS == 1.5
+    assert (verification.INTACT, verification.CHANGED, verification.ERROR) == (0.02, 0.10, 0.01)
+    assert TABLE_VERSION == 1
+
+
+def test_goals_and_starts_lie_where_results_were_published_with() -> None:
+    tasks = TableWorld(Settings()).tasks("extension-of-reach")
+    goals = {"1": (0.0, 15.3), "2": (0.0, 26.8), "3": (-12.4, 22.4), "4": (12.4, 22.4)}
+    starts = {"1": -9.0, "2": -3.0, "3": 3.0, "4": 9.0}
+    assert [(task.goal.name, task.start_name) for task in tasks] == list(product(goals, starts))
+    for task in tasks:
+        assert task.goal.center == goals[task.goal.name]
+        assert task.goal.half_width == 2.25
+        assert task.start == Point(starts[task.start_name], 22.4)
