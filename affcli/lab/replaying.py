@@ -75,8 +75,8 @@ def replay_trial(store: Store, trial_id: int) -> Replay:
         trial_id: its number.
 
     Raises:
-        UsageError: there is none of that number, or it names a part that this affcli lacks.
-        BadInputError: it was made in another version of its world or with another planner.
+        UsageError: there is none of that number.
+        BadInputError: it names a part that this affcli lacks or has in another version.
         DatabaseError: it, or the table it began with, holds what affcli does not write.
     """
     trial = store.trials.trial(trial_id)
@@ -122,7 +122,7 @@ def require_shape(trial: TrialInfo) -> None:
         if not tool.parts:
             raise DatabaseError(
                 f"trial {trial.id}: this affcli does not know what a {tool.name} looks like; "
-                "install the affcli that made it"
+                f"{registry.REMEDY}"
             )
 
 
