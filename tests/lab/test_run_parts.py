@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from affcli import registry
-from affcli.config import Settings, settings_from, settings_with
+from affcli.config import Settings, settings_with
 from affcli.core.behavior import BehaviorCall, BehaviorName
 from affcli.core.identity import Component, canonical_json
 from affcli.core.motion import Slide
