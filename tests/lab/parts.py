@@ -15,13 +15,14 @@ from affcli.core.behavior import BehaviorCall
 from affcli.core.geometry import Point
 from affcli.core.observation import Observation, SensorKind
 from affcli.core.part import Kind, Part
-from affcli.core.ports import Experimenter, Film, Robot, Sensor
+from affcli.core.ports import Experimenter, Robot, Sensor
 from affcli.core.scene import Scene
 from affcli.core.setting import Setting as Parameter
 from affcli.core.specs import LearningSpec, RowStarts, TrialSpec, VerificationSpec
 from affcli.core.task import Task
 from affcli.core.tool import Tool
 from affcli.core.trial import BabblingRecord
+from affcli.core.world import Film
 from affcli.simulation.table_world import TableSetting, TableWorld
 
 
@@ -31,7 +32,7 @@ def register(monkeypatch: pytest.MonkeyPatch, *added: Part, without: str = "") -
 
     def parts(kind: Kind) -> Mapping[str, Part]:
         own = {part.name: part for part in added if part.kind == kind}
-        return {name: part for name, part in (known(kind) | own).items() if name != without}
+        return {name: part for name, part in {**known(kind), **own}.items() if name != without}
 
     monkeypatch.setattr(registry, "parts", parts)
 

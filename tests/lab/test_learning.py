@@ -16,6 +16,7 @@ from affcli.config import Settings, settings_with, with_sensor
 from affcli.core.change_detection import change_detected
 from affcli.core.identity import Component
 from affcli.core.records import LearningRunInfo
+from affcli.core.setting import Setting, Value
 from affcli.core.specs import LearningSpec
 from affcli.core.tool import hold_of
 from affcli.errors import AffcliError, BadInputError, DatabaseError
@@ -419,7 +420,7 @@ def test_the_runs_of_other_defaults_are_named_with_what_changed(
     assert {one.name for one in alike.changed} == {*changed, "tool", "binding"}
 
 
-def _with_defaults(usual: dict[str, config.Value]) -> dict[str, config.Setting]:
+def _with_defaults(usual: dict[str, Value]) -> dict[str, Setting]:
     """Return the known settings with other defaults."""
     known = config.known_settings()
     return {name: replace(one, default=usual[name]) for name, one in known.items()}

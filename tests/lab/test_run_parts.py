@@ -65,7 +65,7 @@ def test_what_is_not_there_is_refused_in_a_line(
     chosen: dict[str, str], error: type[AffcliError], says: str
 ) -> None:
     with pytest.raises(error, match=says) as caught:
-        RunParts.chosen(Settings(), **chosen)  # type: ignore[arg-type]
+        RunParts.chosen(Settings(), **chosen)
     assert "\n" not in str(caught.value)
 
 
