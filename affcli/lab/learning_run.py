@@ -20,6 +20,7 @@ class LearningRun:
         checkpoint: what `checkpoint` gave when the run was stopped; None to begin.
 
     Attributes:
+        world: where it takes place.
         setting: the world as it was laid out.
         calibration: of the camera that the robot sees through, as JSON; None without one.
 
@@ -31,7 +32,8 @@ class LearningRun:
 
     def __init__(self, spec: LearningSpec, checkpoint: dict[str, Any] | None = None) -> None:
         self.spec = spec
-        self.setting = world_of(spec, again=True).learning(spec, laid_out=checkpoint is None)
+        self.world = world_of(spec, again=True)
+        self.setting = self.world.learning(spec, laid_out=checkpoint is None)
         self.calibration = self.setting.calibration
         self._explorer = registry.explorer(spec.explorer, self.setting, settings_of(spec))
         self._state = BabblingState()
