@@ -47,6 +47,9 @@ DEFAULTS: Mapping[str, str] = {
 }
 """What a run carries unless it is told otherwise: the paper's."""
 
+REMEDY = "install what made the record"
+"""What to do about a record that names a part which is not here."""
+
 
 @cache
 def parts(kind: Kind) -> Mapping[str, Part]:
@@ -126,19 +129,31 @@ def world(chosen: Component, settings: "Settings") -> "World":
     return _built("worlds", chosen)(settings)  # type: ignore[no-any-return]
 
 
+def recorded(kind: Kind, chosen: Component) -> Part:
+    """Return the part that a record names, in the version that this affcli has.
+
+    Raises:
+        BadInputError: this affcli has no such part.
+    """
+    found = parts(kind).get(chosen.name)
+    if found is None:
+        raise BadInputError(f"{_lacking(kind, chosen)} no such part; {REMEDY}")
+    return found
+
+
+def _lacking(kind: Kind, chosen: Component) -> str:
+    return f"{kind.removesuffix('s')} {one_line(chosen, 80)}: this affcli has"
+
+
 def _built(kind: Kind, chosen: Component) -> Callable[..., Any]:
     """Return what builds the part that a component names, its parameters given.
 
     Raises:
         BadInputError: this affcli has no such part, or has it in another version.
     """
-    found = parts(kind).get(chosen.name)
-    if found is None or found.version != chosen.version:
-        has = "no such part" if found is None else f"version {found.version} of it"
-        raise BadInputError(
-            f"{kind.removesuffix('s')} {one_line(chosen, 80)}: this affcli has {has}; install what "
-            "made the record"
-        )
+    found = recorded(kind, chosen)
+    if found.version != chosen.version:
+        raise BadInputError(f"{_lacking(kind, chosen)} version {found.version} of it; {REMEDY}")
     values = found.values(chosen)
 
     def build(*given: Any) -> Any:

@@ -234,6 +234,7 @@ class StepScene:
         wrist_start, wrist_end: before and after the exploratory behavior; when the tool could not
             be lowered, before and after it was carried there (in, rad, table frame).
         attractor_start, attractor_end: where the attractor truly was (in, table frame).
+        binding: how the tool was held.
         call: the exploratory behavior.
         blocked: the tool could not be lowered, so it was not executed.
     """
@@ -251,5 +252,6 @@ class StepScene:
     wrist_end: Pose
     attractor_start: Point
     attractor_end: Point
+    binding: BehaviorCall
     call: BehaviorCall
     blocked: bool

@@ -44,6 +44,10 @@ def break_tool(
     Yields:
         Each trial with its number in the store, once it is saved, and the share that is done; the
         broken tool's first.
+
+    Raises:
+        UsageError: there are no such tasks.
+        BadInputError: a part that this affcli lacks.
     """
     learned = run.spec
     world, kind = world_of(learned), sensor or learned.sensor
@@ -58,7 +62,8 @@ def break_tool(
         )
     ]
     first = planned[0][0][0]
-    # A camera that is not there, or cannot be calibrated, is found before anything is recorded.
+    # A planner or a camera that is not there is found before anything is recorded.
+    registry.planner(planner)
     _ = world.trial(first, learned).calibration
     spec = session_spec("break-tool", run, first)
     session = store.sessions.begin(spec, versions(world, kind), now())

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 from affcli.config import first_defaults, known_settings
 from affcli.core.records import AlikeRun, ChangedPart, LearningRunInfo
@@ -58,7 +59,9 @@ def learn(
     new = False
     while info.status != "done":
         run = gone_on_with(info)
-        for chunk in _chunks(run.steps()):
+        # What cannot be gone on with is saved whole: after an interruption it begins anew.
+        size = None if run.checkpoint() is None else CHUNK
+        for chunk in _chunks(run.steps(), size):
             new = True
             saved = store.learning.append(
                 info.id,
@@ -78,15 +81,9 @@ def learn(
     return Learned(info, new)
 
 
-def _chunks(steps: Iterator[LearningStep]) -> Iterator[Sequence[LearningStep]]:
-    """Gather steps into chunks of `CHUNK`; the last may be shorter."""
-    chunk: list[LearningStep] = []
-    for step in steps:
-        chunk.append(step)
-        if len(chunk) == CHUNK:
-            yield chunk
-            chunk = []
-    if chunk:
+def _chunks(steps: Iterator[LearningStep], size: int | None) -> Iterator[Sequence[LearningStep]]:
+    """Gather steps into chunks of this size, all in one for None; the last may be shorter."""
+    while chunk := list(islice(steps, size)):
         yield chunk
 
 
@@ -99,7 +96,8 @@ def made_by_other_defaults(store: Store, spec: LearningSpec) -> tuple[AlikeRun, 
 
     Returns:
         Each with what was otherwise: settings that the command leaves at their default, with their
-        values then and now; the world's version.
+        values then and now; the world's version. A tool's shape follows from these and from the
+        version of affcli, the usual grasp from the tools' sizes.
     """
     if store.learning.find(spec) is not None:
         return ()
@@ -107,7 +105,10 @@ def made_by_other_defaults(store: Store, spec: LearningSpec) -> tuple[AlikeRun, 
     found = []
     for alike in store.learning.find_alike(spec):
         changed = tuple(_with_values(one) for one in alike.changed)
-        if all(one.name == "world" or one.wanted == usual.get(one.name) for one in changed):
+        follows = {"world", "tool"}
+        if any(one.name.startswith("tools.") for one in changed):
+            follows.add("binding")
+        if all(one.name in follows or one.wanted == usual.get(one.name) for one in changed):
             found.append(AlikeRun(alike.run, changed))
     return tuple(found)
 

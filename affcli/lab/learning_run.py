@@ -8,7 +8,7 @@ from affcli.core.observation import Observation
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import LearningSpec, LearningStep
 from affcli.errors import DatabaseError
-from affcli.lab.run_parts import require_world_version, settings_of, world_of
+from affcli.lab.run_parts import settings_of, world_of
 from affcli.procedures.babbling import BabblingState, babble
 
 
@@ -20,18 +20,20 @@ class LearningRun:
         checkpoint: what `checkpoint` gave when the run was stopped; None to begin.
 
     Attributes:
+        world: where it takes place.
         setting: the world as it was laid out.
         calibration: of the camera that the robot sees through, as JSON; None without one.
 
     Raises:
-        UsageError, BadInputError: a part that this affcli lacks, or has in another version.
+        BadInputError: a part that this affcli lacks, or has in another version.
+        DatabaseError: settings or a tool that it does not know.
         ValueError, KeyError, TypeError: the checkpoint is none that `checkpoint` gives.
     """
 
     def __init__(self, spec: LearningSpec, checkpoint: dict[str, Any] | None = None) -> None:
-        require_world_version(spec.world)
         self.spec = spec
-        self.setting = world_of(spec, again=True).learning(spec, laid_out=checkpoint is None)
+        self.world = world_of(spec, again=True)
+        self.setting = self.world.learning(spec, laid_out=checkpoint is None)
         self.calibration = self.setting.calibration
         self._explorer = registry.explorer(spec.explorer, self.setting, settings_of(spec))
         self._state = BabblingState()
@@ -98,7 +100,7 @@ def gone_on_with(info: LearningRunInfo) -> LearningRun:
 
     Raises:
         DatabaseError: what it needs to go on is missing, or is none that `LearningRun` gives.
-        UsageError, BadInputError: a part that it began with is missing here.
+        BadInputError: a part that it began with is missing here.
     """
     damaged = DatabaseError(
         f"learning run {info.id} cannot be gone on with: its checkpoint is not as affcli writes "

@@ -17,7 +17,7 @@ from affcli.core.replay import Considered, Replay, ReplayedBehavior, ReplayedSte
 from affcli.core.scene import Scene
 from affcli.core.specs import Counters
 from affcli.core.trial import TrialStep
-from affcli.core.world import Setting
+from affcli.core.world import Setting, World
 from affcli.errors import DatabaseError, UsageError
 from affcli.lab.filming import FRAME_RATE, Reel
 from affcli.lab.learning_run import LearningRun
@@ -75,8 +75,8 @@ def replay_trial(store: Store, trial_id: int) -> Replay:
         trial_id: its number.
 
     Raises:
-        UsageError: there is none of that number, or it names a part that this affcli lacks.
-        BadInputError: it was made in another version of its world or with another planner.
+        UsageError: there is none of that number, or its world has no replays.
+        BadInputError: it names a part that this affcli lacks or has in another version.
         DatabaseError: it, or the table it began with, holds what affcli does not write.
     """
     trial = store.trials.trial(trial_id)
@@ -88,6 +88,7 @@ def replay_trial(store: Store, trial_id: int) -> Replay:
     else:
         table, ids = store.learning.table(trial.run_id, as_learned=True)
     world = world_of(learned)
+    _require_replays(world)
     lost = None
     if spec.shape != spec.tool:
         lost = world.lost_rows(learned, spec.held, store.learning.row_starts(trial.run_id))
@@ -122,8 +123,14 @@ def require_shape(trial: TrialInfo) -> None:
         if not tool.parts:
             raise DatabaseError(
                 f"trial {trial.id}: this affcli does not know what a {tool.name} looks like; "
-                "install the affcli that made it"
+                f"{registry.REMEDY}"
             )
+
+
+def _require_replays(world: World) -> None:
+    """Refuse to hold against its record what comes out otherwise each time."""
+    if not world.exact_replay:
+        raise UsageError(f"the world {world.name} has no replays: it gives no record twice")
 
 
 def _scene(setting: Setting) -> Scene:
@@ -169,6 +176,7 @@ def replay_run(
         UsageError, BadInputError, DatabaseError: as `replay_trial`.
     """
     learning = LearningRun(run.spec)
+    _require_replays(learning.world)
     setting, reel = learning.setting, Reel()
     if first == 1:
         setting.film(reel)

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from affcli import registry
@@ -116,21 +116,20 @@ def world_of(learned: LearningSpec, *, again: bool = False) -> World:
         again: what was done there is to be done again, so it must be the same version of the world.
 
     Raises:
-        UsageError: this affcli has no such world.
-        BadInputError: it has another version of it, or settings it does not know.
-        DatabaseError: the shape of the run's tool is not known.
+        BadInputError: this affcli has no such world or binding, or another version of the world.
+        DatabaseError: it does not know some of the settings, or the shape of the run's tool.
     """
-    settings = settings_of(learned)
+    settings, made = settings_of(learned), learned.world
     require_known(settings)
     if not learned.held.parts:
         raise DatabaseError(
-            f"this affcli does not know what a {learned.tool} looks like; install the affcli that "
-            "made the record"
+            f"this affcli does not know what a {learned.tool} looks like; {registry.REMEDY}"
         )
-    chosen = learned.world
-    if not again:
-        chosen = registry.component("worlds", learned.world.name)
-    return registry.world(chosen, settings)
+    registry.recorded("bindings", Component(learned.binding.name))
+    if again:
+        require_world_version(made)
+    here = replace(made, version=registry.recorded("worlds", made).version)
+    return registry.world(here, settings)
 
 
 def tasks_of(world: World, task_set: str) -> tuple[Task, ...]:
@@ -142,13 +141,13 @@ def require_world_version(made: Component) -> None:
     """Refuse to do again what was made in another version of the world.
 
     Raises:
-        BadInputError: naming both versions.
+        BadInputError: naming both versions; or this affcli has no such world.
     """
-    now = registry.part("worlds", made.name).version
+    now = registry.recorded("worlds", made).version
     if now != made.version:
         raise BadInputError(
             f"made in version {made.version} of the world {made.name}, this affcli has {now}: it "
-            "cannot be done again to the bit; install the affcli that made it"
+            f"cannot be done again to the bit; {registry.REMEDY}"
         )
 
 

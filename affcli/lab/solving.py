@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from affcli import registry
 from affcli.core.identity import Component
 from affcli.core.names import one_of
 from affcli.core.observation import SensorKind
@@ -106,7 +107,9 @@ def solve(
 
     Raises:
         UsageError: there are no such tasks.
+        BadInputError: a part that this affcli lacks.
     """
+    choosing = registry.planner(planner)
     planned = []
     for run in runs:
         world, kind = world_of(run.spec), sensor or run.spec.sensor
@@ -125,7 +128,8 @@ def solve(
             trial = replace(as_learned, counters=Counters.STORED)
             table, ids = store.learning.table(run.id)
             number = store.trials.begin(session, run.id, trial, calibration)
-            steps = WithEnd(run_trial(trial, run.spec, table, world.trial(trial, run.spec)))
+            setting = world.trial(trial, run.spec)
+            steps = WithEnd(run_trial(trial, run.spec, table, setting, choosing))
             for record, truth in steps:
                 row = ids[record.row.step]
                 store.trials.save_step(number, trial, record, truth, row)

@@ -1,6 +1,7 @@
 """One testing trial (§7)."""
 
 from collections.abc import Generator, Iterator, Sequence
+from dataclasses import replace
 from typing import Generic, TypeVar
 
 from affcli import registry
@@ -107,7 +108,7 @@ def trial_specs(
         planner: how it chooses rows.
         world: where they take place.
     """
-    place = Component(world.name, version=world.version)
+    place = replace(learned.world, version=world.version)
     robot, counters = learned.robot, Counters.AS_LEARNED
     return [
         TrialSpec(

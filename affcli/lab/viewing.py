@@ -132,7 +132,7 @@ def scenes_of_step(step: StepScene) -> list[Scene]:
     settings, begins = settings_of(step.learned), _scene(step)
     table = Table(settings.workspace, settings.physics)
     table.put_down(step.held.painted(step.learned.held.color))
-    table.take(hold_of(step.learned.binding))
+    table.take(hold_of(step.binding))
     table.goal = begins.goal
     table.wrist = step.wrist_before or table.home
     table.attractor = begins.attractor
@@ -155,7 +155,7 @@ def _scene(step: StepScene) -> Scene:
         Pose(*step.attractor_start),
         PUCK_COLOR,
         step.wrist_start,
-        step.held.painted(believed.color).held(hold_of(step.learned.binding)),
+        step.held.painted(believed.color).held(hold_of(step.binding)),
         step.goal,
     )
 

@@ -251,6 +251,7 @@ class Learning:
                 wrist_end=reading.pose(row, "wrist_end"),
                 attractor_start=start,
                 attractor_end=end,
+                binding=info.spec.binding,
                 call=reading.behavior_call(row["exploratory_behavior"], row["exploratory_params"]),
                 blocked=False,
             )

@@ -189,6 +189,7 @@ class Trials:
             wrist_end=this.wrist_end,
             attractor_start=this.true_start,
             attractor_end=this.true_end,
+            binding=this.row.binding,
             call=this.row.exploratory,
             blocked=this.status is None,
         )

@@ -20,7 +20,8 @@ def migrated(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def store(migrated: Path, tmp_path: Path) -> Iterator[Store]:
-    """A database without records, open for writing."""
+    """A database without records, open for writing, without waiting for the disk."""
     path = Path(shutil.copy(migrated, tmp_path / "lab.db"))
     with open_store(path, create=False, write=True) as opened:
+        opened.database._driver.execute("PRAGMA synchronous = OFF")
         yield opened

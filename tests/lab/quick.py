@@ -5,19 +5,23 @@ from functools import cache
 
 from affcli.config import Settings, settings_with
 from affcli.core.affordance_table import AffordanceTable
-from affcli.core.geometry import Point, Pose
-from affcli.core.trial import BabblingRecord, LearningSpec, Truth
+from affcli.core.identity import Component
+from affcli.core.observation import SensorKind
+from affcli.core.records import LearningRunInfo
+from affcli.core.specs import LearningSpec, LearningStep, RowStarts
 from affcli.lab.learning_run import LearningRun
+from affcli.lab.solving import SolvedStep, SolvedTrial, WantedTasks, solve
+from affcli.store import Store
+from tests.factories import learning_spec
 
 NOW = "2026-01-02T03:04:05+00:00"
-Steps = tuple[tuple[BabblingRecord, Truth], ...]
+Steps = tuple[LearningStep, ...]
 
 LEISURELY = settings_with({"motion": {"hold": 40.0}, "trial": {"max_steps": 4}}, "a test")
 """Standing still for so long after every move that an hour holds some forty behaviors."""
 IMPATIENT = settings_with({"trial": {"max_steps": 6}}, "a test")
 """Trials are given up soon."""
-EXACT = settings_with({"sensor": {"position_noise": 0, "color_noise": 0}}, "a test")
-"""A sensor without noise."""
+PLANNER = Component("nested-query")
 
 
 def now() -> str:
@@ -31,14 +35,18 @@ def learned(spec: LearningSpec) -> Steps:
     return tuple(LearningRun(spec).steps())
 
 
-def table_from(steps: Iterable[tuple[BabblingRecord, Truth]]) -> AffordanceTable:
+def table_from(steps: Iterable[LearningStep]) -> AffordanceTable:
     """Return the affordance table that a learning run leaves."""
     return AffordanceTable(r.affordance for r, _ in steps if r.affordance is not None)
 
 
-def starts_of(steps: Iterable[tuple[BabblingRecord, Truth]]) -> dict[int, tuple[Point, Pose]]:
+def starts_of(steps: Iterable[LearningStep]) -> RowStarts:
     """Return where wrist and attractor truly were when each row was made, by step."""
-    return {r.step: (r.execution.wrist_start, t.start) for r, t in steps if r.affordance}
+    return {
+        r.step: (r.execution.wrist_start, truth.start)
+        for r, truth in steps
+        if r.affordance is not None and truth is not None
+    }
 
 
 def spec_of(
@@ -49,8 +57,31 @@ def spec_of(
     settings: Settings | None = None,
 ) -> LearningSpec:
     """Return the spec of a learning run of so many behaviors."""
-    text = (settings or Settings()).to_json()
-    return LearningSpec(tool, seed, robot, None, behaviors, text)
+    return learning_spec(tool, seed=seed, robot=robot, behaviors=behaviors, settings=settings)
+
+
+def stored(store: Store, spec: LearningSpec) -> LearningRunInfo:
+    """Put a finished run into the store, learned once for all tests."""
+    run, steps = store.learning.begin(spec, {}, NOW), learned(spec)
+    clock = steps[-1][0].clock
+    assert store.learning.append(run.id, 0, steps, None, clock, done=True, now=NOW)
+    return store.learning.run(run.id)
+
+
+def solving(
+    store: Store,
+    runs: LearningRunInfo | list[LearningRunInfo],
+    goal: str = "1",
+    start: str | None = None,
+    *,
+    seed: int = 0,
+    planner: Component = PLANNER,
+    sensor: SensorKind | None = None,
+) -> Iterator[SolvedStep | SolvedTrial]:
+    """Solve some of the paper's tasks with what the store holds."""
+    wanted = WantedTasks("extension-of-reach", goal, start)
+    many = runs if isinstance(runs, list) else [runs]
+    return solve(store, many, wanted, seed, now, planner, sensor)
 
 
 def counted(items: Iterable[object]) -> int:

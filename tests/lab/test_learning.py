@@ -2,24 +2,33 @@
 
 import json
 import math
+import shutil
 from dataclasses import replace
 from itertools import islice, pairwise
+from pathlib import Path
 
 import pytest
-from affcli.lab.bench import tool_named
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from affcli.config import Settings
+from affcli import config
+from affcli.config import Settings, settings_with, with_sensor
 from affcli.core.change_detection import change_detected
-from affcli.errors import AffcliError
+from affcli.core.identity import Component
+from affcli.core.records import LearningRunInfo
+from affcli.core.setting import Setting, Value
+from affcli.core.specs import LearningSpec
+from affcli.core.tool import hold_of
+from affcli.errors import AffcliError, BadInputError, DatabaseError
 from affcli.lab import learning
-from affcli.lab.learning import learn
+from affcli.lab.learning import learn, made_by_other_defaults
 from affcli.lab.learning_run import LearningRun
+from affcli.lab.run_parts import RunParts, settings_of
 from affcli.simulation.arm import reach_at
-from affcli.store import LearningRunInfo, Store
-from tests.factories import learning_spec
-from tests.lab.quick import LEISURELY, Steps, learned, now, spec_of, table_from
+from affcli.store import Store, open_store, run_sql, upgrade
+from tests.factories import learning_spec, seeds
+from tests.lab.parts import CURIOUS, SILENT, register
+from tests.lab.quick import LEISURELY, Steps, learned, now, spec_of, stored, table_from
 
 SETTINGS = Settings()
 NOISE = SETTINGS.sensor.position_noise
@@ -33,7 +42,13 @@ def gone_on_with(run: LearningRun) -> LearningRun:
     return LearningRun(run.spec, json.loads(json.dumps(run.checkpoint())))
 
 
-@settings(deadline=None, max_examples=40)
+def curious_spec(behaviors: int = SHORT) -> LearningSpec:
+    """Return a run of the explorer that a test brings; it must be registered."""
+    parts = RunParts.chosen(SETTINGS, explorer="curious:patience=1")
+    return parts.spec("t-hook", 3, 0, None, behaviors)
+
+
+@settings(max_examples=40)
 @given(tools, st.integers(0, 3), st.integers(0, SHORT))
 def test_a_run_stopped_anywhere_goes_on_as_if_it_had_not_been_stopped(
     tool: str, seed: int, stop: int
@@ -48,7 +63,7 @@ def test_a_run_stopped_anywhere_goes_on_as_if_it_had_not_been_stopped(
     assert before + tuple(again.steps()) == learned(spec)
 
 
-@settings(deadline=None, max_examples=15)
+@settings(max_examples=15)
 @given(tools, st.lists(st.integers(1, 6), min_size=1, max_size=6))
 def test_a_run_stopped_time_and_again_goes_on_all_the_same(tool: str, pieces: list[int]) -> None:
     spec = spec_of(tool, SHORT)
@@ -56,13 +71,29 @@ def test_a_run_stopped_time_and_again_goes_on_all_the_same(tool: str, pieces: li
     steps: Steps = ()
     for piece in pieces:
         steps = (*steps, *islice(run.steps(), piece))
-        assert run.checkpoint()["step"] == len(steps)
         run = gone_on_with(run)
+        assert run.behaviors == len(steps)
     assert (*steps, *run.steps()) == learned(spec)
 
 
-@settings(deadline=None, max_examples=10)
-@given(tools, st.integers(0, 2**63 - 1), st.integers(0, 1000))
+def test_an_outsiders_explorer_is_stopped_after_any_behavior_and_gone_on_with(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What it remembers is in the checkpoint."""
+    register(monkeypatch, CURIOUS)
+    whole = tuple(LearningRun(curious_spec(200)).steps())
+    tried = {str(record.execution.call) for record, _ in whole if record.affordance}
+    assert len(tried) > 4
+    assert any(record.redraws for record, _ in whole)
+    run = LearningRun(curious_spec(200))
+    for step in whole:
+        run = gone_on_with(run)
+        assert next(run.steps()) == step
+    assert run.done
+
+
+@settings(max_examples=10)
+@given(tools, seeds, st.integers(0, 1000))
 def test_the_same_spec_gives_the_same_records(tool: str, seed: int, robot: int) -> None:
     spec = learning_spec(tool, seed=seed, robot=robot, behaviors=5)
     assert tuple(LearningRun(spec).steps()) == tuple(LearningRun(spec).steps())
@@ -80,10 +111,10 @@ def test_a_longer_run_begins_with_the_shorter_one() -> None:
     assert learned(spec_of(behaviors=SHORT))[:7] == learned(spec_of(behaviors=7))
 
 
-@pytest.mark.parametrize("behaviors", [1, 2, 30])
-def test_a_run_of_so_many_behaviors_has_so_many(behaviors: int) -> None:
-    records = [record for record, _ in learned(spec_of(behaviors=behaviors))]
-    assert [record.step for record in records] == list(range(1, behaviors + 1))
+def test_a_run_of_so_many_behaviors_has_so_many() -> None:
+    for behaviors in (1, 2, 30):
+        records = [record for record, _ in learned(spec_of(behaviors=behaviors))]
+        assert [record.step for record in records] == list(range(1, behaviors + 1))
 
 
 def test_the_behavior_during_which_the_hour_runs_out_is_the_last() -> None:
@@ -92,7 +123,7 @@ def test_the_behavior_during_which_the_hour_runs_out_is_the_last() -> None:
     run = LearningRun(learning_spec("stick", hours=hours))
     clocks = [record.clock for record, _ in run.steps()]
     assert clocks[-2] < 3600.0 * hours <= clocks[-1]
-    assert run.bench.robot.clock == clocks[-1]
+    assert run.setting.robot.clock == clocks[-1]
     assert all(a < b for a, b in pairwise(clocks))
     assert run.done
 
@@ -103,6 +134,21 @@ def test_an_hour_of_a_slower_robot_holds_fewer_behaviors() -> None:
         for s in (SETTINGS, LEISURELY)
     )
     assert slow < quick
+
+
+def test_a_repertoire_is_what_the_robot_tries() -> None:
+    parts = RunParts.chosen(SETTINGS, repertoire=["extend-arm:offset_distance=3", "slide-arm-left"])
+    calls = {
+        str(record.execution.call) for record, _ in learned(parts.spec("stick", 0, 0, None, 20))
+    }
+    assert calls == {"extend arm 3", "slide arm left 5"}
+
+
+def test_rows_carry_the_grasp_by_which_the_tool_was_held() -> None:
+    parts = RunParts.chosen(SETTINGS, binding="grasp:grasp_point=4,angle=10")
+    rows = list(table_from(learned(parts.spec("t-hook", 0, 0, None, 100))))
+    assert len(rows) > 5
+    assert {(row.binding["grasp_point"], row.binding["angle"]) for row in rows} == {(4.0, 10.0)}
 
 
 @pytest.fixture(scope="module")
@@ -122,6 +168,7 @@ def test_rows_are_made_where_the_attractor_was_seen_to_move(long_run: Steps) -> 
 
 def test_what_the_robot_saw_is_what_truly_was_but_for_noise(long_run: Steps) -> None:
     for record, truth in long_run:
+        assert truth is not None
         wrists = record.execution.wrist_start, record.execution.wrist_end
         for seen, true, wrist in zip((record.start, record.end), truth, wrists, strict=True):
             assert math.dist(seen.object_position, true.point) < 8.0 * NOISE
@@ -133,21 +180,24 @@ def test_what_the_robot_saw_is_what_truly_was_but_for_noise(long_run: Steps) -> 
 
 def test_between_resets_nothing_but_behaviors_moves_the_attractor(long_run: Steps) -> None:
     for (_, before), (record, after) in pairwise(long_run):
+        assert before is not None
+        assert after is not None
         assert (after.start == before.end) is (record.resets == 0)
 
 
 def test_every_wrist_offset_lies_in_the_box_and_every_wrist_in_reach(long_run: Steps) -> None:
-    arm = SETTINGS.workspace.arm
+    arm, spec = SETTINGS.workspace.arm, spec_of()
     reach = reach_at(arm, arm.flange_height)
-    shape = tool_named(SETTINGS, "t-hook")
+    held = spec.held.held(hold_of(spec.binding))
     for record, truth in long_run:
+        assert truth is not None
         assert abs(record.placing.call["x"]) <= BOX.offset_x_max
         assert BOX.offset_y_min <= record.placing.call["y"] <= BOX.offset_y_max
         wrist = record.execution.wrist_start
         assert wrist == record.placing.wrist_end
-        assert reach.inner - 1e-6 <= math.hypot(*wrist) <= reach.outer + 1e-6
-        beside = type(wrist)(truth.start.x - wrist.x, truth.start.y - wrist.y)
-        gap = min(part.distance(beside) for part in shape.outlines)
+        assert reach.inner - 1e-6 <= math.hypot(wrist.x, wrist.y) <= reach.outer + 1e-6
+        beside = wrist.point._replace(x=truth.start.x - wrist.x, y=truth.start.y - wrist.y)
+        gap = min(part.distance(beside) for part in held.outlines)
         assert gap >= SETTINGS.workspace.puck.radius
 
 
@@ -171,7 +221,7 @@ def test_learning_saves_the_run_and_the_same_again_says_that_it_is_done(store: S
     assert first.new
     assert (first.info.status, first.info.behaviors) == ("done", 60)
     assert told == [first.info]
-    table, _ = store.affordance_table(first.info.id)
+    table, _ = store.learning.table(first.info.id)
     assert list(table) == list(table_from(learned(spec)))
     assert first.info.rows == len(table)
     assert first.info.resets == sum(record.resets for record, _ in learned(spec))
@@ -184,28 +234,89 @@ class PowerCutError(AffcliError):
     """Ends a learning run between two chunks."""
 
 
-@pytest.mark.parametrize("chunks", [1, 3, 5])
+def cut_after(store: Store, spec: LearningSpec, behaviors: int) -> LearningRunInfo:
+    """Interrupt a run between two chunks; return what the store holds of it."""
+
+    def cut(info: LearningRunInfo) -> None:
+        if info.behaviors == behaviors:
+            raise PowerCutError
+
+    with pytest.raises(PowerCutError):
+        learn(store, spec, now, cut)
+    (half,) = store.learning.runs(status="running")
+    assert half.behaviors == behaviors
+    return half
+
+
+@pytest.mark.parametrize("chunks", [1, 5])
 def test_a_run_interrupted_between_chunks_goes_on_to_the_same_table(
     store: Store, monkeypatch: pytest.MonkeyPatch, chunks: int
 ) -> None:
     monkeypatch.setattr(learning, "CHUNK", 11)
     spec = spec_of("t-hook", 60)
-
-    def cut(info: LearningRunInfo) -> None:
-        if info.behaviors == 11 * chunks:
-            raise PowerCutError
-
-    with pytest.raises(PowerCutError):
-        learn(store, spec, now, cut)
-    (half,) = store.learning_runs()
-    assert (half.status, half.behaviors) == ("running", 11 * chunks)
+    cut_after(store, spec, 11 * chunks)
     resumed = learn(store, spec, now)
     assert resumed.new
     assert resumed.info.behaviors == 60
     assert resumed.info.resets == sum(record.resets for record, _ in learned(spec))
     assert resumed.info.redraws == sum(record.redraws for record, _ in learned(spec))
     assert resumed.info.robot_seconds == learned(spec)[-1][0].clock
-    assert list(store.affordance_table(resumed.info.id)[0]) == list(table_from(learned(spec)))
+    assert list(store.learning.table(resumed.info.id)[0]) == list(table_from(learned(spec)))
+
+
+def test_an_interrupted_run_goes_on_with_the_parts_it_began_with_or_says_what_is_missing(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And the rest of the database works."""
+    monkeypatch.setattr(learning, "CHUNK", 10)
+    with monkeypatch.context() as with_it:
+        register(with_it, CURIOUS)
+        spec = curious_spec()
+        cut_after(store, spec, 10)
+    (half,) = store.learning.runs()
+    assert half.spec == spec
+    with pytest.raises(BadInputError, match=r"explorer curious:patience=1: this affcli has no"):
+        learn(store, half.spec, now)
+    other = learn(store, spec_of("stick", 15), now)
+    assert other.info.behaviors == 15
+    assert store.learning.run(half.id) == half
+    register(monkeypatch, CURIOUS)
+    finished = learn(store, half.spec, now).info
+    assert (finished.id, finished.status) == (half.id, "done")
+    whole = tuple(LearningRun(spec).steps())
+    assert list(store.learning.table(half.id)[0]) == list(table_from(whole))
+
+
+def test_a_run_of_another_version_of_its_world_is_not_gone_on_with(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(learning, "CHUNK", 10)
+    half = cut_after(store, spec_of("stick"), 10)
+    later = replace(half.spec, world=Component("table", version=2))
+    store.learning.begin(later, {}, now())
+    with pytest.raises(BadInputError, match="made in version 2 of the world table"):
+        learn(store, later, now)
+
+
+def test_a_run_that_is_done_needs_none_of_its_parts(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with monkeypatch.context() as earlier:
+        register(earlier, SILENT)
+        spec = RunParts.chosen(SETTINGS, world="silent").spec("stick", 0, 0, None, 12)
+        done = learn(store, spec, now).info
+    assert learn(store, spec, now) == learning.Learned(done, new=False)
+
+
+def test_a_checkpoint_that_is_none_is_damage(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(learning, "CHUNK", 10)
+    spec = spec_of("stick", 25)
+    half = cut_after(store, spec, 10)
+    for broken in ("NULL", "'{}'", "json_set(checkpoint, '$.step', 3)"):
+        with store.database.writing() as connection:
+            connection.exec_driver_sql(f"UPDATE learning_run SET checkpoint = {broken}")
+        with pytest.raises(DatabaseError, match=f"learning run {half.id} cannot be gone on with"):
+            learn(store, spec, now)
 
 
 def test_a_run_that_another_process_carried_on_meanwhile_is_not_done_twice(
@@ -224,21 +335,108 @@ def test_a_run_that_another_process_carried_on_meanwhile_is_not_done_twice(
     finished = learn(store, spec, now, meanwhile)
     assert overtaken == [10]
     assert (finished.info.status, finished.info.behaviors) == ("done", 40)
-    assert list(store.affordance_table(finished.info.id)[0]) == list(table_from(learned(spec)))
+    assert list(store.learning.table(finished.info.id)[0]) == list(table_from(learned(spec)))
 
 
-RUNS = [("stick", 0), ("stick", 1), ("t-hook", 0)]
+def test_a_world_that_gives_no_snapshots_is_learned_whole_or_begun_anew(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It saves nothing on the way, and does not tell where the attractor truly was."""
+    monkeypatch.setattr(learning, "CHUNK", 10)
+    register(monkeypatch, SILENT)
+    spec = RunParts.chosen(SETTINGS, world="silent").spec("t-hook", 0, 0, None, 120)
+    store.learning.begin(spec, {}, now())
+    told: list[LearningRunInfo] = []
+    info = learn(store, spec, now, told.append).info
+    assert [one.behaviors for one in told] == [120]
+    assert info.rows > 5
+    assert store.learning.row_starts(info.id) == {}
+    truth = "select count(*), count(true_start_x), count(true_end_angle) from behavior"
+    assert run_sql(store.path, truth).rows == ((120, 0, 0),)
 
 
 def test_each_run_has_a_table_of_its_own(store: Store) -> None:
-    infos = [learn(store, spec_of(tool, 40, seed), now).info for tool, seed in RUNS]
-    assert len({info.id for info in infos}) == len(RUNS)
-    for info, (tool, seed) in zip(infos, RUNS, strict=True):
-        rows = list(store.affordance_table(info.id)[0])
-        assert rows == list(table_from(learned(spec_of(tool, 40, seed))))
+    specs = [spec_of(tool, 40, seed) for tool, seed in [("stick", 0), ("stick", 1), ("t-hook", 0)]]
+    infos = [learn(store, spec, now).info for spec in specs]
+    assert len({info.id for info in infos}) == len(specs)
+    for info, spec in zip(infos, specs, strict=True):
+        assert list(store.learning.table(info.id)[0]) == list(table_from(learned(spec)))
 
 
-def test_a_run_of_other_settings_is_another_run(store: Store) -> None:
-    one = spec_of("stick", 5)
-    other = replace(one, settings=LEISURELY.to_json())
-    assert learn(store, one, now).info.id != learn(store, other, now).info.id
+def test_a_run_with_another_part_is_another_run(store: Store) -> None:
+    chosen = [
+        RunParts.chosen(SETTINGS),
+        RunParts.chosen(LEISURELY),
+        RunParts.chosen(SETTINGS, binding="grasp:grasp_point=4"),
+        RunParts.chosen(SETTINGS, repertoire=["paper", "extend-arm:offset_distance=3"]),
+        RunParts.chosen(settings_with({"sensor": {"kind": "exact"}}, "a test")),
+    ]
+    ids = {learn(store, one.spec("stick", 0, 0, None, 3), now).info.id for one in chosen}
+    assert len(ids) == len(chosen)
+
+
+DATABASES = Path(__file__).parents[1] / "store" / "databases"
+
+
+@pytest.mark.parametrize("revision", ["0001", "0002", "0003"])
+def test_runs_of_every_past_revision_are_found_again(revision: str, tmp_path: Path) -> None:
+    """The same command says that it is done; one without its --config says what was otherwise."""
+    path = Path(shutil.copy(DATABASES / f"{revision}.db", tmp_path / "old.db"))
+    path.chmod(0o644)
+    upgrade(path)
+    with open_store(path, create=False, write=True) as store:
+        runs = store.learning.runs(status="done")
+        assert runs
+        for run in runs:
+            spec, own = run.spec, settings_of(run.spec)
+            limits = (spec.seed, spec.robot, spec.hours, spec.behaviors)
+            again = RunParts.chosen(own).spec(spec.tool, *limits)
+            assert made_by_other_defaults(store, again) == ()
+            assert learn(store, again, now) == learning.Learned(run, new=False)
+            usual = RunParts.chosen(with_sensor(Settings(), spec.sensor)).spec(spec.tool, *limits)
+            alike = made_by_other_defaults(store, usual)
+            named = [{one.name: one.stored for one in found.changed} for found in alike]
+            assert named == ([own.differing()] if own.differing() else [])
+
+
+def test_the_runs_of_other_defaults_are_named_with_what_changed(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The tool's shape and the usual grasp follow from the sizes: they are no other command."""
+    old = stored(store, spec_of("t-hook", 20))
+    first = settings_with({}, "a test").values()
+    usual = {**first, "tools.handle_length": 13.5, "tools.handle_below_grasp": 1.25}
+    changed = {name: (first[name],) for name in usual if usual[name] != first[name]}
+    monkeypatch.setattr(config, "CHANGED", changed)
+    monkeypatch.setattr(config, "_defaults", lambda: dict(usual))
+    monkeypatch.setattr(learning, "known_settings", lambda: _with_defaults(usual))
+    now_usual = settings_with({}, "a test")
+    spec = learning_spec("t-hook", behaviors=20, settings=now_usual)
+    (alike,) = made_by_other_defaults(store, spec)
+    assert alike.run == old
+    assert {"tools.handle_length": (first["tools.handle_length"], 13.5)}.items() <= {
+        one.name: (one.stored, one.wanted) for one in alike.changed
+    }.items()
+    assert {one.name for one in alike.changed} == {*changed, "tool", "binding"}
+
+
+def _with_defaults(usual: dict[str, Value]) -> dict[str, Setting]:
+    """Return the known settings with other defaults."""
+    known = config.known_settings()
+    return {name: replace(one, default=usual[name]) for name, one in known.items()}
+
+
+def test_a_run_of_another_world_version_is_named_and_one_of_other_wishes_is_not(
+    store: Store,
+) -> None:
+    spec = spec_of("stick", 20)
+    older = replace(spec, world=Component("table", version=9))
+    store.learning.begin(older, {}, now())
+    (alike,) = made_by_other_defaults(store, spec)
+    assert [(one.name, one.stored, one.wanted) for one in alike.changed] == [
+        ("world", "table@9", "table")
+    ]
+    wished = spec_of("stick", 20, settings=settings_with({"babbling": {"draws": 9}}, "a test"))
+    assert made_by_other_defaults(store, wished) == ()
+    stored(store, spec)
+    assert made_by_other_defaults(store, spec) == ()

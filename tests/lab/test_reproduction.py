@@ -3,34 +3,37 @@
 import sqlite3
 from collections.abc import Iterator
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from affcli.simulation.world import World
 
-from affcli.core.tool import TOOL_PARTS
-from affcli.core.trial import LearningSpec, Protocol, RobotRecord
-from affcli.lab.reproduction import one_robot, reproduce
+from affcli.core.identity import Component
+from affcli.core.specs import Protocol, RobotRecord
+from affcli.lab.reproduction import Reproduced, one_robot, reproduce, reproduced_again
+from affcli.lab.run_parts import RunParts
 from affcli.lab.trials import whole_trial
+from affcli.simulation.table_world import TableWorld
+from affcli.simulation.tools.paper import TOOL_PARTS
 from affcli.store import Store, open_store
-from tests.lab.quick import LEISURELY, learned, now, table_from, taken
+from tests.lab.quick import LEISURELY, PLANNER, learned, now, table_from, taken
 
-SEED = 11
+WHAT = Reproduced(RunParts.chosen(LEISURELY), PLANNER, 11)
 
 
 @pytest.fixture(scope="module")
 def life() -> RobotRecord:
     """The life of robot 2."""
-    return one_robot(LEISURELY, SEED, 2)
+    return one_robot(WHAT, 2)
 
 
-def test_a_life_is_a_pure_function_of_settings_seed_and_number(life: RobotRecord) -> None:
-    assert one_robot(LEISURELY, SEED, 2) == life
+def test_a_life_is_a_pure_function_of_what_is_reproduced_and_its_number(life: RobotRecord) -> None:
+    assert one_robot(WHAT, 2) == life
 
 
 def test_other_robots_and_other_seeds_live_other_lives(life: RobotRecord) -> None:
-    for seed, robot in ((SEED, 3), (SEED + 1, 2)):
-        other = one_robot(LEISURELY, seed, robot)
+    for what, robot in ((WHAT, 3), (replace(WHAT, seed=12), 2)):
+        other = one_robot(what, robot)
         for (_, mine, _), (_, theirs, _) in zip(life.learned, other.learned, strict=True):
             calls = [[r.placing.call for r, _ in steps[:3]] for steps in (mine, theirs)]
             assert calls[0] != calls[1]
@@ -39,8 +42,7 @@ def test_other_robots_and_other_seeds_live_other_lives(life: RobotRecord) -> Non
 def test_a_robot_learns_the_five_tools_for_an_hour_each(life: RobotRecord) -> None:
     """§6: "The learning trials were limited to one hour of run time for every tool"."""
     specs = [spec for spec, _, _ in life.learned]
-    text = LEISURELY.to_json()
-    assert specs == [LearningSpec(tool, SEED, 2, 1.0, None, text) for tool in TOOL_PARTS]
+    assert specs == [WHAT.parts.spec(tool, 11, 2, 1.0) for tool in TOOL_PARTS]
     for spec, steps, seconds in life.learned:
         assert steps == learned(spec)
         assert seconds == steps[-1][0].clock >= 3600.0 > steps[-2][0].clock
@@ -59,18 +61,31 @@ def test_a_robot_does_80_trials_with_whole_tools_and_16_with_a_broken_one(
     assert {(t.spec.tool, t.spec.shape) for t in broken} == {("t-hook", "l-hook")}
     assert all(step.lost is None for t in whole for step in t.steps)
     assert all(step.lost is not None for t in broken for step in t.steps)
-    assert {(t.spec.seed, t.spec.robot) for t in life.trials} == {(SEED, 2)}
+    assert {(t.spec.seed, t.spec.robot) for t in life.trials} == {(11, 2)}
 
 
 def test_each_trial_of_a_life_is_what_it_is_by_itself(life: RobotRecord) -> None:
     """Each starts from the table as learned, whatever trials went before."""
+    runs = {spec.tool: spec for spec, _, _ in life.learned}
     tables = {spec.tool: table_from(steps) for spec, steps, _ in life.learned}
     assert any(trial.steps for trial in life.trials)
     for trial in life.trials[::7]:
-        world = World(LEISURELY.workspace, LEISURELY.physics)
-        alone = whole_trial(trial.spec, LEISURELY, tables[trial.spec.tool], world)
+        tool, world = trial.spec.tool, TableWorld(LEISURELY)
+        alone = whole_trial(trial.spec, runs[tool], tables[tool], world)
         assert alone.end == trial.end
         assert [s[:2] for s in alone.steps] == [s[:2] for s in trial.steps]
+
+
+def test_what_is_reproduced_is_chosen_and_brought_back_from_its_session() -> None:
+    parts = RunParts.chosen(LEISURELY, binding="grasp:grasp_point=2", repertoire=["slide-arm-left"])
+    what = Reproduced(parts, Component.of("nested-query", {"share": 0.05}), 3)
+    session = what.session(7)
+    assert session.robots == 7
+    assert reproduced_again(session) == what
+    assert session.key != WHAT.session(7).key
+    assert {str(trial.spec.planner) for trial in one_robot(what, 0).trials} == {
+        "nested-query:share=0.05"
+    }
 
 
 @pytest.fixture
@@ -90,22 +105,23 @@ def contents(store: Store) -> list[str]:
 def test_the_store_is_the_same_for_any_number_of_workers(
     store: Store, another_store: Store
 ) -> None:
-    alone = list(reproduce(store, LEISURELY, 3, SEED, 1, now))
+    alone = list(reproduce(store, WHAT, 3, 1, now))
     assert alone == [alone[0], 1, 2, 3]
-    assert list(reproduce(another_store, LEISURELY, 3, SEED, 2, now)) == alone
+    assert list(reproduce(another_store, WHAT, 3, 2, now)) == alone
     assert contents(store) == contents(another_store)
-    assert store.saved_robots(alone[0]) == {0, 1, 2}
-    (session,) = store.sessions("reproduce")
-    assert session.status == "done"
+    assert store.sessions.saved_robots(alone[0]) == {0, 1, 2}
+    (session,) = store.sessions.all("reproduce")
+    assert (session.status, session.spec) == ("done", WHAT.session(3))
 
 
 def test_an_interrupted_reproduction_goes_on_with_the_robots_that_are_missing(
     store: Store, another_store: Store
 ) -> None:
-    whole = list(reproduce(another_store, LEISURELY, 2, SEED, 1, now))
-    taken(reproduce(store, LEISURELY, 2, SEED, 1, now), 2)
-    assert store.saved_robots(whole[0]) == {0}
-    assert list(reproduce(store, LEISURELY, 2, SEED, 1, now)) == [whole[0], 2]
+    whole = list(reproduce(another_store, WHAT, 2, 1, now))
+    taken(reproduce(store, WHAT, 2, 1, now), 2)
+    assert store.sessions.saved_robots(whole[0]) == {0}
+    (half,) = store.sessions.all("reproduce")
+    assert list(reproduce(store, reproduced_again(half.spec), 2, 1, now)) == [whole[0], 2]
     assert contents(store) == contents(another_store)
-    assert list(reproduce(store, LEISURELY, 2, SEED, 1, now)) == [whole[0]]
+    assert list(reproduce(store, WHAT, 2, 1, now)) == [whole[0]]
     assert contents(store) == contents(another_store)

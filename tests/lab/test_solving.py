@@ -1,31 +1,36 @@
 """Solving with what the store holds: counters and steps together (§3.2, §6.2, §7.1)."""
 
+from dataclasses import replace
+
 import pytest
 
 from affcli.core.affordance import Affordance
-from affcli.core.trial import Counters, Outcome
-from affcli.lab.learning import learn
-from affcli.lab.solving import SolvedStep, SolvedTrial, solve
-from affcli.store import LearningRunInfo, Store, StoredStep
-from tests.lab.quick import IMPATIENT, counted, learned, now, spec_of, table_from, taken
+from affcli.core.identity import Component
+from affcli.core.records import LearningRunInfo, StoredStep
+from affcli.core.specs import Counters
+from affcli.core.trial import Outcome
+from affcli.errors import AffcliError, BadInputError, UsageError
+from affcli.lab.solving import SolvedStep, SolvedTrial
+from affcli.store import Store, run_sql
+from tests.lab.quick import IMPATIENT, counted, solving, spec_of, stored, taken
 
-ALL = (1, 2, 3, 4)
+GOALS = ("1", "2", "3", "4")
+NARROW = Component.of("nested-query", {"share": 0.05})
 
 
 @pytest.fixture
 def run(store: Store) -> LearningRunInfo:
     """A T-hook's learning run, in the store."""
-    return learn(store, spec_of("t-hook", 400, settings=IMPATIENT), now).info
+    return stored(store, spec_of("t-hook", 400, settings=IMPATIENT))
 
 
 def rows_of(store: Store, run: LearningRunInfo) -> list[Affordance]:
-    return list(store.affordance_table(run.id)[0])
+    return list(store.learning.table(run.id)[0])
 
 
 def steps_of(store: Store) -> list[StoredStep]:
     """Return all steps in the store, oldest first."""
-    with_end = [trial.id for trial in store.outcomes()]
-    return [step for trial in with_end for step in store.trial_steps(trial)]
+    return [step for trial in store.trials.trials() for step in store.trials.steps(trial.id)]
 
 
 def assert_counters_are_those_of_the_steps(
@@ -37,20 +42,20 @@ def assert_counters_are_those_of_the_steps(
         assert row.times_successful == 1 + sum(record.replicated for record in uses)
 
 
-@pytest.mark.parametrize("goal", ALL)
+@pytest.mark.parametrize("goal", GOALS)
 def test_stored_counters_and_stored_steps_agree(
-    store: Store, run: LearningRunInfo, goal: int
+    store: Store, run: LearningRunInfo, goal: str
 ) -> None:
     """§3.2: the counters "are updated during testing trials": those in the store."""
-    events = list(solve(store, [run], goal, ALL, 0, now))
+    events = list(solving(store, run, goal))
     steps = [event for event in events if isinstance(event, SolvedStep)]
     assert_counters_are_those_of_the_steps(store, run, steps)
-    stored = steps_of(store)
-    assert [(s.number, s.row.step, s.replicated) for s in stored] == [
-        (s.record.number, s.record.row.step, s.record.replicated) for s in steps
+    kept = steps_of(store)
+    assert [(s.number, s.affordance_id, s.row, s.replicated, s.reasons) for s in kept] == [
+        (s.record.number, s.row, s.record.row, s.record.replicated, s.record.reasons) for s in steps
     ]
-    latest = {s.affordance_id: s for s in stored}
-    table, ids = store.affordance_table(run.id)
+    latest = {s.affordance_id: s for s in kept}
+    table, ids = store.learning.table(run.id)
     for row in table:
         if ids[row.step] in latest:
             last = latest[ids[row.step]]
@@ -62,7 +67,7 @@ def test_each_trial_starts_from_the_counters_that_the_one_before_it_left(
     store: Store, run: LearningRunInfo
 ) -> None:
     used = {row.step: 1 for row in rows_of(store, run)}
-    for event in solve(store, [run], 2, ALL, 0, now):
+    for event in solving(store, run, "2"):
         if isinstance(event, SolvedStep):
             assert event.record.row.times_used == used[event.record.row.step]
             used[event.record.row.step] += 1
@@ -72,7 +77,7 @@ def test_each_trial_starts_from_the_counters_that_the_one_before_it_left(
 def test_a_step_is_in_the_store_before_it_is_told(store: Store, run: LearningRunInfo) -> None:
     """Nothing told is lost: a command that is stopped after a step has saved that step."""
     told: list[SolvedStep] = []
-    for event in solve(store, [run], 1, ALL, 0, now):
+    for event in solving(store, run):
         if isinstance(event, SolvedStep):
             told.append(event)
             assert_counters_are_those_of_the_steps(store, run, told)
@@ -85,25 +90,51 @@ def test_a_step_is_in_the_store_before_it_is_told(store: Store, run: LearningRun
 def test_a_trial_of_each_tool_and_start_ends_and_is_kept(
     store: Store, run: LearningRunInfo
 ) -> None:
-    stick = learn(store, spec_of("stick", 200, settings=IMPATIENT), now).info
-    events = list(solve(store, [run, stick], 3, (2, 4), 7, now))
+    stick = stored(store, spec_of("stick", 200, settings=IMPATIENT))
+    events = list(solving(store, [run, stick], "3", seed=7))
     ends = [event for event in events if isinstance(event, SolvedTrial)]
     which = [(e.trial.tool, e.trial.shape, e.trial.goal, e.trial.start) for e in ends]
-    assert which == [
-        *(("t-hook", "t-hook", 3, start) for start in (2, 4)),
-        *(("stick", "stick", 3, start) for start in (2, 4)),
-    ]
+    assert which == [(tool, tool, "3", start) for tool in ("t-hook", "stick") for start in GOALS]
     assert {(e.trial.seed, e.trial.counters) for e in ends} == {(7, Counters.STORED)}
     assert all(e.solved is (e.end.outcome is Outcome.SOLVED) for e in ends)
-    kept = store.outcomes(kind="solve")
-    assert [(t.tool, t.start, t.outcome, t.steps) for t in kept] == [
-        (e.trial.tool, e.trial.start, e.end.outcome, e.end.steps) for e in ends
+    kept = store.trials.trials()
+    assert [(t.id, t.spec, t.outcome, t.steps) for t in kept] == [
+        (e.id, e.trial, e.end.outcome, e.end.steps) for e in ends
     ]
-    (session,) = store.sessions("solve")
+    (session,) = store.sessions.all("solve")
     assert session.status == "done"
     for end in ends:
         mine = [e for e in events if isinstance(e, SolvedStep) and e.trial == end.trial]
         assert len(mine) == end.end.steps
+
+
+def test_one_start_alone(store: Store, run: LearningRunInfo) -> None:
+    counted(solving(store, run, "4", "2"))
+    (trial,) = store.trials.trials()
+    assert (trial.spec.goal, trial.spec.start) == ("4", "2")
+
+
+@pytest.mark.parametrize(
+    ("goal", "start", "planner", "error", "says"),
+    [
+        ("5", None, NARROW, UsageError, "no goal '5'; did you mean 1 or 2 or 3 or 4"),
+        ("1", "north", NARROW, UsageError, "no start 'north'"),
+        ("1", None, Component("oracle"), BadInputError, "planner oracle: this affcli has no such"),
+        ("1", None, replace(NARROW, version=3), BadInputError, "version 1 of it"),
+    ],
+)
+def test_what_is_not_there_is_refused_before_anything_is_recorded(
+    goal: str,
+    start: str | None,
+    planner: Component,
+    error: type[AffcliError],
+    says: str,
+    store: Store,
+    run: LearningRunInfo,
+) -> None:
+    with pytest.raises(error, match=says):
+        counted(solving(store, run, goal, start, planner=planner))
+    assert store.sessions.all() == ()
 
 
 def test_solving_again_goes_on_with_the_counters_as_they_are(
@@ -111,16 +142,36 @@ def test_solving_again_goes_on_with_the_counters_as_they_are(
 ) -> None:
     for _ in range(2):
         before = {row.step: row for row in rows_of(store, run)}
-        events = solve(store, [run], 4, (1,), 3, now)
+        events = solving(store, run, "4", "1", seed=3)
         first = next(e for e in events if isinstance(e, SolvedStep))
         assert first.record.row == before[first.record.row.step]
-    assert len(store.sessions("solve")) == 2
+    assert len(store.sessions.all("solve")) == 2
+
+
+def test_two_planners_are_both_stored_and_choose_by_their_own_rule(
+    store: Store, run: LearningRunInfo
+) -> None:
+    for planner in (Component("nested-query"), NARROW):
+        counted(solving(store, run, "2", planner=planner))
+    sessions = store.sessions.all("solve")
+    assert [str(one.spec.planner) for one in sessions] == [
+        "nested-query",
+        "nested-query:share=0.05",
+    ]
+    planners = "select distinct planner from trial order by id"
+    assert run_sql(store.path, planners).rows == (
+        ("nested-query",),
+        ("nested-query:share=0.05",),
+    )
+    for session, share in zip(sessions, (0.2, 0.05), strict=True):
+        for trial in store.trials.trials(session_id=session.id):
+            for step in store.trials.steps(trial.id):
+                assert step.reasons[-1].value == share
 
 
 def test_solving_uses_the_table_that_was_learned(store: Store, run: LearningRunInfo) -> None:
-    assert rows_of(store, run) == list(
-        table_from(learned(spec_of("t-hook", 400, settings=IMPATIENT)))
-    )
-    taken(solve(store, [run], 1, ALL, 0, now), 1)
-    assert run.spec.settings == IMPATIENT.to_json()
+    taken(solving(store, run), 1)
+    assert run.spec.settings == '{"trial.max_steps":6}'
     assert counted(rows_of(store, run)) == run.rows
+    (session,) = store.sessions.all("solve")
+    assert (session.spec.settings, session.status) == (run.spec.settings, "running")

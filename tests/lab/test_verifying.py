@@ -4,28 +4,28 @@ from dataclasses import replace
 from itertools import islice
 
 import pytest
-from affcli.lab.bench import tool_named
 
-from affcli.config import Settings
+from affcli.analysis.verification import JudgedTry
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import AffordanceTable
-from affcli.core.tool import TOOL_PARTS
-from affcli.core.verification import Evidence, ReplicationRecord, Verdict, VerificationSpec
+from affcli.core.records import LearningRunInfo
+from affcli.core.specs import VerificationSpec
+from affcli.core.verification import Evidence, ReplicationRecord, Verdict
 from affcli.errors import DatabaseError, UsageError
-from affcli.lab.learning import learn
-from affcli.lab.solving import solve
+from affcli.lab.run_parts import RunParts
 from affcli.lab.verifying import replications, verification_spec, verify
-from affcli.report.verification import Checked
-from affcli.store import LearningRunInfo, Store, check, open_store, run_sql
-from tests.lab.quick import EXACT, IMPATIENT, learned, now, spec_of, table_from
-
-ALL = (1, 2, 3, 4)
+from affcli.simulation.tools.paper import TOOL_PARTS
+from affcli.store import Store, check, open_store, run_sql
+from tests import factories
+from tests.factories import EXACT, tool_named
+from tests.lab.parts import SILENT, register
+from tests.lab.quick import IMPATIENT, learned, now, solving, spec_of, stored, table_from
 
 
 @pytest.fixture
 def run(store: Store) -> LearningRunInfo:
     """A T-hook's learning run, in the store."""
-    return learn(store, spec_of("t-hook", 400, settings=IMPATIENT), now).info
+    return stored(store, spec_of("t-hook", 400, settings=IMPATIENT))
 
 
 def spec_for(
@@ -36,27 +36,29 @@ def spec_for(
     *,
     until_verdict: bool = False,
 ) -> VerificationSpec:
-    return verification_spec(run, shape, seed, None, tries, until_verdict=until_verdict)
+    held = tool_named(shape)
+    return verification_spec(run, held, seed, None, tries, until_verdict=until_verdict)
 
 
-def verified(store: Store, run: LearningRunInfo, spec: VerificationSpec) -> list[Checked]:
+def verified(store: Store, run: LearningRunInfo, spec: VerificationSpec) -> list[JudgedTry]:
     """Verify and update; return all tries."""
     return list(verify(store, run, spec, now, update=True))
 
 
-def records_of(tries: list[Checked]) -> list[ReplicationRecord]:
+def records_of(tries: list[JudgedTry]) -> list[ReplicationRecord]:
     return [one.record for one in tries]
 
 
 def rows_of(store: Store, run: LearningRunInfo) -> list[Affordance]:
-    return list(store.affordance_table(run.id)[0])
+    return list(store.learning.table(run.id)[0])
 
 
-def simulated(tool: str, shape: str, *, settings: Settings = EXACT) -> list[ReplicationRecord]:
-    """Try every row of a table once, without a store."""
-    table = table_from(learned(spec_of(tool, 400, settings=settings)))
-    spec = VerificationSpec(tool, shape, 0, 0, "exact", len(table), until_verdict=False)
-    return [record for record, _ in replications(spec, settings, table)]
+def simulated(tool: str, shape: str) -> list[ReplicationRecord]:
+    """Try every row of a table once, without a store and without noise."""
+    run = spec_of(tool, 400, settings=EXACT)
+    table = table_from(learned(run))
+    spec = factories.verification_spec(run, held=tool_named(shape), tries=len(table))
+    return [record for record, _ in replications(spec, run, table)]
 
 
 @pytest.mark.parametrize("tool", sorted(TOOL_PARTS))
@@ -80,7 +82,7 @@ def test_tries_without_noise_stand_to_the_tool_as_their_rows_did(tool: str) -> N
 
 
 def test_rows_of_lost_parts_fail_and_those_of_kept_parts_replicate() -> None:
-    whole = tool_named(EXACT, "t-hook")
+    whole = tool_named("t-hook")
     left: list[bool] = []
     right: list[bool] = []
     for record in simulated("t-hook", "l-hook"):
@@ -124,7 +126,7 @@ def test_it_ends_with_the_first_verdict_if_asked_to(store: Store, run: LearningR
 def test_every_row_is_tried_once_unless_told_how_many(store: Store, run: LearningRunInfo) -> None:
     tries = list(verify(store, run, spec_for(run), now, update=False))
     assert sorted(one.affordance_id for one in tries) == sorted(
-        store.affordance_table(run.id)[1].values()
+        store.learning.table(run.id)[1].values()
     )
     for many in (1, 7, 2 * run.rows + 3):
         some = list(verify(store, run, spec_for(run, tries=many), now, update=False))
@@ -134,9 +136,9 @@ def test_every_row_is_tried_once_unless_told_how_many(store: Store, run: Learnin
 def test_stored_counters_are_those_of_steps_and_tries_together(
     store: Store, run: LearningRunInfo
 ) -> None:
-    list(solve(store, [run], 2, ALL, 0, now))
+    list(solving(store, run, "2"))
     verified(store, run, spec_for(run, "l-hook", 90))
-    list(solve(store, [run], 4, ALL, 0, now))
+    list(solving(store, run, "4"))
     tries = verified(store, run, spec_for(run, tries=33))
     assert not any(finding.wrong for finding in check(store.path))
     used = sum(row.times_used - 1 for row in rows_of(store, run))
@@ -149,7 +151,7 @@ def test_stored_counters_are_those_of_steps_and_tries_together(
 
 
 def test_what_is_recorded_is_what_was_done(store: Store, run: LearningRunInfo) -> None:
-    list(solve(store, [run], 1, (2,), 0, now))
+    list(solving(store, run, "1", "2"))
     uses = sum(row.times_used for row in rows_of(store, run))
     tries = verified(store, run, spec_for(run, "l-hook", 40, seed=5))
     about = run_sql(
@@ -227,7 +229,7 @@ def test_counters_changed_meanwhile_stop_it_and_nothing_of_that_try_is_kept(
 
 
 def test_the_same_table_and_seed_give_the_same_tries(store: Store, run: LearningRunInfo) -> None:
-    def tries(seed: int) -> list[Checked]:
+    def tries(seed: int) -> list[JudgedTry]:
         return list(verify(store, run, spec_for(run, tries=30, seed=seed), now, update=False))
 
     assert tries(4) == tries(4)
@@ -245,32 +247,55 @@ def test_the_same_seed_again_gives_an_updated_table_new_experience(
 
 
 def test_counters_of_the_table_change_as_it_goes() -> None:
-    settings = IMPATIENT
-    table = table_from(learned(spec_of("t-hook", 400, settings=settings)))
+    run = spec_of("t-hook", 400, settings=IMPATIENT)
+    table = table_from(learned(run))
     twin = AffordanceTable(list(table))
-    spec = VerificationSpec("t-hook", "l-hook", 3, 0, "noisy", 50, until_verdict=False)
-    records = [record for record, _ in replications(spec, settings, twin)]
+    spec = factories.verification_spec(run, held=tool_named("l-hook"), seed=3, tries=50)
+    records = [record for record, _ in replications(spec, run, twin)]
     assert int(twin.times_used.sum()) == int(table.times_used.sum()) + 50
     successes = sum(record.replicated for record in records)
     assert int(twin.times_successful.sum()) == int(table.times_successful.sum()) + successes
 
 
 def test_a_blank_table_cannot_be_verified(store: Store) -> None:
-    blank = learn(store, spec_of("stick", 2, settings=IMPATIENT), now).info
+    blank = stored(store, spec_of("stick", 2, settings=IMPATIENT))
     blank = replace(blank, rows=0)
     with pytest.raises(UsageError, match=r"made no rows: there is nothing to verify"):
         spec_for(blank, "stick")
 
 
 def test_the_sensor_is_that_of_learning_unless_told(store: Store) -> None:
-    run = learn(store, spec_of("stick", 60, settings=EXACT), now).info
-    assert verification_spec(run, "stick", 0, None, 1, until_verdict=False).sensor == "noisy"
-    assert verification_spec(run, "stick", 0, "exact", 1, until_verdict=False).sensor == "exact"
+    run, stick = stored(store, spec_of("stick", 60)), tool_named("stick")
+    assert verification_spec(run, stick, 0, None, 1, until_verdict=False).sensor == "noisy"
+    assert verification_spec(run, stick, 0, "exact", 1, until_verdict=False).sensor == "exact"
 
 
 def test_regions_are_parts_of_the_tool_as_it_was_learned(
     store: Store, run: LearningRunInfo
 ) -> None:
     tries = list(verify(store, run, spec_for(run, "l-hook"), now, update=False))
-    parts = set(TOOL_PARTS[tool_named(IMPATIENT, "t-hook").name])
-    assert {one.region for one in tries} == parts
+    assert {one.region for one in tries} == {part.name for part in run.spec.held.parts}
+
+
+def test_rows_of_another_grasp_are_tried_with_their_own() -> None:
+    """The tool is grasped anew first; without noise what an intact tool afforded it affords."""
+    parts = RunParts.chosen(EXACT, binding="grasp:grasp_point=4,angle=15")
+    other = parts.spec("t-hook", 0, 0, None, 300)
+    table = table_from(learned(other))
+    run = replace(other, binding=spec_of().binding)
+    spec = factories.verification_spec(run, tries=len(table))
+    records = [record for record, _ in replications(spec, run, table)]
+    assert [record.regrasped for record in records] == [True, *[False] * (len(records) - 1)]
+    assert sum(record.replicated for record in records) >= 0.97 * len(records) > 10
+
+
+def test_a_world_that_cannot_tell_is_verified_by_what_was_seen(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    register(monkeypatch, SILENT)
+    parts = RunParts.chosen(IMPATIENT, world="silent")
+    run = stored(store, parts.spec("t-hook", 0, 0, None, 300))
+    tries = verified(store, run, spec_for(run, tries=20))
+    assert any(one.record.replicated for one in tries)
+    kept = "select count(*), count(true_start_x), count(true_end_angle) from replication"
+    assert run_sql(store.path, kept).rows == ((20, 0, 0),)
