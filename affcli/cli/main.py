@@ -2,11 +2,12 @@
 
 import gc
 import sys
+from pathlib import Path
 
 from affcli.cli.commands import goes_on
 from affcli.cli.signals import SignalHandler
 from affcli.cli.terminal import prepare_streams, say
-from affcli.errors import AffcliError, one_line
+from affcli.errors import AffcliError, BadInputError, one_line
 
 OBJECTS_BETWEEN_COLLECTIONS = 100_000
 """New objects after which Python searches for cycles among them. Its own 700 is meant for programs
@@ -22,6 +23,10 @@ def main() -> int:
     """
     gc.set_threshold(OBJECTS_BETWEEN_COLLECTIONS)
     prepare_streams()
+    try:
+        Path.cwd()
+    except FileNotFoundError:
+        return _fail("the working folder is gone; cd to one that is there", BadInputError.exit_code)
     handler = SignalHandler()
     try:
         # Imported only now: a ctrl-C meanwhile is one line like any other.

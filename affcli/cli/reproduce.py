@@ -94,7 +94,7 @@ def reproduce(
                     f"nothing to resume in {database}; begin one: affcli reproduce --robots 20"
                 )
             what, robots = lab.reproduction.reproduced_again(begun[-1].spec), begun[-1].spec.robots
-        events = lab.reproduction.reproduce(store, what, robots, workers, now)
+        events = lab.reproduction.reproduce(store, what, robots, workers, now, say)
         session = next(events)
         with progress("reproducing", robots) as bar:
             for saved in events:

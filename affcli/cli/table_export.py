@@ -78,11 +78,11 @@ def export(
     relation = next(one for one in RELATIONS if one == known)
     if relation != "rows" and (behavior, probability, region) != (None, None, None):
         raise UsageError(f"--behavior, --probability and --region choose rows: not --what {what}")
-    write = _checked_format(kind, out)
     if out != STDOUT:
-        require_new(out, force=force)
+        require_new(out, force=force, dash=True)
         if out.exists() and database.exists() and out.samefile(database):
             raise BadInputError(f"{one_line(out)}: the database itself; name another file")
+    write = _checked_format(kind, out)
 
     with opened(database) as store:
         runs = chosen_runs(store, choice, database)

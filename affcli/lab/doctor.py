@@ -5,6 +5,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from affcli import __version__
+from affcli.lab.workers import start_fault
 from affcli.store import Fact, State, environment_facts
 
 NEEDED = ("numpy", "pymunk", "SQLAlchemy", "alembic", "typer", "rich", "jinja2")
@@ -14,6 +15,8 @@ EXTRAS = {
     "parquet files": ("parquet", ("pyarrow",)),
 }
 """What only some need: by what it is for, the name of the extra and its packages."""
+SEVERAL = 2
+"""Worker processes that are started to see whether they can be."""
 
 
 def facts(database: Path) -> tuple[Fact, ...]:
@@ -29,8 +32,17 @@ def facts(database: Path) -> tuple[Fact, ...]:
             _packages(what, names, f"to use it: pip install 'affcli[{extra}]'", missing="look")
             for what, (extra, names) in EXTRAS.items()
         ),
+        _workers(),
         *environment_facts(database),
     )
+
+
+def _workers() -> Fact:
+    """Say whether `reproduce` can let several processes work."""
+    fault = start_fault(SEVERAL)
+    if fault:
+        return Fact(*("workers", "look"), f"none can be started: {fault}", "give --workers 1")
+    return Fact("workers", "ok", "processes can be started")
 
 
 def _packages(what: str, names: tuple[str, ...], remedy: str, *, missing: State) -> Fact:

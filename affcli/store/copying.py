@@ -2,7 +2,6 @@
 
 import os
 import sqlite3
-import tempfile
 from contextlib import closing
 from itertools import count
 from pathlib import Path
@@ -11,6 +10,7 @@ from affcli.errors import DatabaseError, one_line
 from affcli.store.database_file import look, opened, require_place, require_something
 from affcli.store.faults import faults_named
 from affcli.store.lock_retry import LONGEST_WAIT, retried
+from affcli.store.replacing import replacing
 
 
 def backup(path: Path, copy: Path, *, timeout: float = LONGEST_WAIT) -> None:
@@ -35,35 +35,33 @@ def backup(path: Path, copy: Path, *, timeout: float = LONGEST_WAIT) -> None:
 
 def copy_of(driver: sqlite3.Connection, path: Path, copy: Path, timeout: float) -> None:
     """Write a copy of an opened database; see `backup`."""
-    folder = copy.absolute().parent
     if copy.exists() and path.samefile(copy):
         raise DatabaseError(f"{one_line(copy)}: that is the database itself; name another file")
     try:
-        handle, name = tempfile.mkstemp(dir=folder, prefix=f".{copy.name[:40]}.")
+        # Who may not read the database shall not read its copy.
+        with replacing(copy, path.stat().st_mode & 0o777) as part:
+            _fill(part, driver, path, copy, timeout)
+        _synced(Path(os.path.realpath(copy)).parent)
     except OSError as error:
         raise DatabaseError(
             f"{one_line(copy)}: no copy can be written there ({error.strerror}); name another place"
         ) from error
-    os.close(handle)
-    temporary = Path(name)
-    try:
-        with faults_named(copy, timeout), closing(sqlite3.connect(temporary)) as target:
-            # All pages in one step, under one read lock: the database at one moment.
-            retried(lambda: driver.backup(target, pages=-1), timeout)
-            # A copy of a WAL database would need two more files beside it.
-            target.execute("PRAGMA journal_mode = delete")
-            verdict = target.execute("PRAGMA integrity_check(1)").fetchone()[0]
-        if verdict != "ok":
-            raise DatabaseError(
-                f"{one_line(path)}: damaged ({one_line(verdict)}), so no copy was made; restore an "
-                "older one"
-            )
-        _synced(temporary)
-        temporary.chmod(0o644)
-        temporary.replace(copy)
-        _synced(folder)
-    finally:
-        temporary.unlink(missing_ok=True)
+
+
+def _fill(part: Path, driver: sqlite3.Connection, path: Path, copy: Path, timeout: float) -> None:
+    """Write a checked copy of an opened database into an empty file."""
+    with faults_named(copy, timeout), closing(sqlite3.connect(part)) as target:
+        # All pages in one step, under one read lock: the database at one moment.
+        retried(lambda: driver.backup(target, pages=-1), timeout)
+        # A copy of a WAL database would need two more files beside it.
+        target.execute("PRAGMA journal_mode = delete")
+        verdict = target.execute("PRAGMA integrity_check(1)").fetchone()[0]
+    if verdict != "ok":
+        raise DatabaseError(
+            f"{one_line(path)}: damaged ({one_line(verdict)}), so no copy was made; restore an "
+            "older one"
+        )
+    _synced(part)
 
 
 def backup_name(path: Path, revision: str) -> Path:

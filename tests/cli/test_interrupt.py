@@ -241,7 +241,7 @@ def test_a_worker_that_died_is_named(tmp_path: Path) -> None:
     database = tmp_path / "my.db"
     with started("reproduce", "--robots", "9", "--workers", "2", "--db", database) as process:
         wait_until(more_than(0, partial(robots, database)), process)
-        os.kill(children_of(process.pid, "spawn_main")[0], signal.SIGKILL)
+        os.kill(children_of(process.pid, "affcli.lab.workers")[0], signal.SIGKILL)
         ended = ending(process)
     assert (ended.code, ended.out) == (1, "")
     assert "a worker process died" in one_printable_line(ended.err)

@@ -187,8 +187,8 @@ def test_the_workers_of_a_killed_reproduction_end_with_it(tmp_path: Path) -> Non
     """None is left to wait for work that will never come."""
     command = ("reproduce", "--robots", "9", "--workers", "2", "--db", tmp_path / "my.db")
     with started(*command) as process:
-        wait_until(lambda: len(children_of(process.pid, "spawn_main")) == 2, process)
-        workers = children_of(process.pid, "spawn_main")
+        wait_until(lambda: len(children_of(process.pid, "affcli.lab.workers")) == 2, process)
+        workers = children_of(process.pid, "affcli.lab.workers")
         process.kill()
         process.wait(PATIENCE)
         deadline = time.monotonic() + PATIENCE

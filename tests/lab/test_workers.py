@@ -1,0 +1,172 @@
+"""Processes that share work: answers in order, and no trouble where they cannot be started."""
+
+import math
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from affcli.errors import AffcliError, SimulationDivergedError
+from affcli.lab.doctor import facts
+from affcli.lab.workers import in_order
+from affcli.store import Fact
+
+ROOTS = [math.sqrt(n) for n in range(30)]
+
+
+def collatz(number: int) -> int:
+    """Return how many steps lead to 1: some tasks take far longer than others."""
+    steps = 0
+    while number != 1:
+        number = number // 2 if number % 2 == 0 else 3 * number + 1
+        steps += 1
+    return steps
+
+
+def own_process(_: int) -> int:
+    return os.getpid()
+
+
+def die(number: int) -> int:
+    """Die of the third task, as a process for which there is no memory."""
+    if number == 2:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return number
+
+
+def diverge(number: int) -> int:
+    if number == 1:
+        raise SimulationDivergedError("too stiff; soften it")
+    return number
+
+
+def never(line: str) -> None:
+    raise AssertionError(line)
+
+
+@contextmanager
+def limited(what: int, value: int) -> Iterator[None]:
+    """Let this process have less of something."""
+    before = resource.getrlimit(what)
+    resource.setrlimit(what, (value, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(what, before)
+
+
+@pytest.mark.parametrize("workers", [1, 2, 3])
+def test_answers_come_in_the_order_of_the_tasks(workers: int) -> None:
+    tasks = [837799, 1, 2, 3, 626331, 5, 6, 511935, 8]
+    assert list(in_order(collatz, tasks, workers, never)) == [collatz(n) for n in tasks]
+
+
+def test_several_processes_work_and_none_of_them_is_this_one() -> None:
+    found = set(in_order(own_process, range(40), 2, never))
+    assert os.getpid() not in found
+    assert len(found) == 2
+
+
+def test_one_worker_is_this_process() -> None:
+    assert set(in_order(own_process, range(3), 1, never)) == {os.getpid()}
+
+
+def test_no_semaphore_is_needed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where nobody can write to /dev/shm there are none."""
+
+    def refused(*_: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("_multiprocessing.SemLock", refused)
+    assert list(in_order(math.sqrt, range(30), 2, never)) == ROOTS
+
+
+@pytest.mark.parametrize("spare", [0, 2, 5])
+def test_with_few_files_one_process_does_it_all(spare: int) -> None:
+    """None of those that are there may be so many that the database has no room."""
+    told: list[str] = []
+    there = len(list(Path("/proc/self/fd").iterdir()))
+    with limited(resource.RLIMIT_NOFILE, there + spare):
+        answers = list(in_order(math.sqrt, range(30), 2, told.append))
+    assert answers == ROOTS
+    (line,) = told
+    assert line == (
+        "2 workers cannot be started (Too many open files); going on as with --workers 1"
+    )
+
+
+@pytest.mark.parametrize(
+    ("error", "why"),
+    [
+        (BlockingIOError(11, "Resource temporarily unavailable"), "temporarily unavailable"),
+        (MemoryError(), None),
+    ],
+)
+def test_a_process_that_cannot_be_begun_is_named(
+    error: BaseException, why: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As with few processes allowed; what is no fault of the system stays what it is."""
+
+    def refused(*_: object, **__: object) -> None:
+        raise error
+
+    monkeypatch.setattr(subprocess, "Popen", refused)
+    told: list[str] = []
+    if why is None:
+        with pytest.raises(type(error)):
+            list(in_order(math.sqrt, range(30), 2, told.append))
+    else:
+        assert list(in_order(math.sqrt, range(30), 2, told.append)) == ROOTS
+        assert why in told[0]
+
+
+@pytest.mark.parametrize("program", ["/bin/false", "/bin/true"])
+def test_workers_that_end_while_they_start_are_noticed(
+    program: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "executable", program)
+    told: list[str] = []
+    assert list(in_order(math.sqrt, range(30), 2, told.append)) == ROOTS
+    assert told == [
+        "2 workers cannot be started (they end while they start); going on as with --workers 1"
+    ]
+
+
+def test_a_worker_that_dies_at_its_work_is_named() -> None:
+    answers = in_order(die, range(9), 2, never)
+    with pytest.raises(AffcliError, match=r"a worker process died, .* with --workers 1"):
+        list(answers)
+
+
+def test_what_the_work_raises_is_raised_here() -> None:
+    with pytest.raises(SimulationDivergedError, match="too stiff; soften it") as raised:
+        list(in_order(diverge, range(9), 2, never))
+    assert "in diverge" in raised.value.__notes__[0]
+
+
+def test_nobody_waits_for_tasks_whose_answers_nobody_wants() -> None:
+    answers = in_order(time.sleep, [0.0, *[600.0] * 5], 2, never)
+    began = time.monotonic()
+    assert next(answers) is None
+    answers.close()  # type: ignore[attr-defined]  # a generator
+    assert time.monotonic() - began < 60.0
+
+
+def test_the_doctor_looks_whether_workers_can_be_started(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def looked() -> Fact:
+        (fact,) = (fact for fact in facts(tmp_path / "my.db") if fact.what == "workers")
+        return fact
+
+    assert looked().state == "ok"
+    monkeypatch.setattr(sys, "executable", "/bin/false")
+    assert (looked().state, looked().remedy) == ("look", "give --workers 1")
+    assert "they end while they start" in looked().value
