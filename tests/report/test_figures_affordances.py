@@ -4,7 +4,6 @@ import math
 from dataclasses import replace
 
 import pytest
-from affcli.report.fates import Fate
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.colors import to_rgba_array
