@@ -2,7 +2,6 @@
 
 import math
 
-from affcli.report.fates import MATCHING_DISTANCE, around_trial, compared, same_effect
 from hypothesis import given
 from hypothesis import strategies as st
 

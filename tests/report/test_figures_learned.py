@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from affcli.report.fates import RowView
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.patches import Arc, Rectangle

@@ -3,7 +3,6 @@
 import json
 
 import pytest
-from affcli.report.paper import EXTENSION_OF_REACH, TOTAL
 
 from affcli.analysis.breaking import Tally, dead_rows
 from affcli.analysis.paper import BROKEN as IN_PAPER
