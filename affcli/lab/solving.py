@@ -89,9 +89,9 @@ def solve(
 ) -> Iterator[SolvedStep | SolvedTrial]:
     """Do one trial for each learned tool and task, one after the other.
 
-    Each trial starts from the table as it is in the store, counters included, and each step is
-    saved together with the counters it changed, in one transaction (§3.2: the counters are updated
-    during testing trials).
+    Each trial starts from the table as it is in the store, counters included, and is saved with the
+    counters that it changed, in one transaction (§3.2: the counters are updated during testing
+    trials).
 
     Args:
         store: open for writing.
@@ -103,7 +103,7 @@ def solve(
         sensor: through what they see; None for what they learned with.
 
     Yields:
-        Each step once it is saved, and each trial's end.
+        The steps of each trial once it is saved, and its end.
 
     Raises:
         UsageError: there are no such tasks.
@@ -126,15 +126,20 @@ def solve(
     for run, world, specs, calibration in planned:
         for as_learned in specs:
             trial = replace(as_learned, counters=Counters.STORED)
-            table, ids = store.learning.table(run.id)
-            number = store.trials.begin(session, run.id, trial, calibration)
-            setting = world.trial(trial, run.spec)
-            steps = WithEnd(run_trial(trial, run.spec, table, setting, choosing))
-            for record, truth in steps:
-                row = ids[record.row.step]
-                store.trials.save_step(number, trial, record, truth, row)
-                yield SolvedStep(trial, record, row)
-            store.trials.end(number, steps.end)
+            taken = []
+            # Others who use this table wait: the counters that a trial begins with are those that
+            # the trials before it left, as a replay takes it.
+            with store.turn():
+                table, ids = store.learning.table(run.id)
+                number = store.trials.begin(session, run.id, trial, calibration)
+                setting = world.trial(trial, run.spec)
+                steps = WithEnd(run_trial(trial, run.spec, table, setting, choosing))
+                for record, truth in steps:
+                    row = ids[record.row.step]
+                    store.trials.save_step(number, trial, record, truth, row)
+                    taken.append(SolvedStep(trial, record, row))
+                store.trials.end(number, steps.end)
+            yield from taken
             yield SolvedTrial(number, trial, steps.end)
     store.sessions.finish(session, now())
 

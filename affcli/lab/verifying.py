@@ -1,6 +1,7 @@
 """The robot tests the table that the store holds, and may update it (§3.1, §8)."""
 
 from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from itertools import islice
 
 from affcli.analysis.regions import region_of
@@ -106,27 +107,29 @@ def verify(
         run: the learning run whose table is tested.
         spec: which verification.
         now: gives the time as ISO text.
-        update: save each try together with the counters it changed, in one transaction; without
-            it nothing is written.
+        update: save the tries together with the counters they changed, all in one transaction
+            when the last is done; others who use the table wait. Without it nothing is written.
 
     Yields:
-        Each try; once it is saved, if it is.
+        Each try.
     """
-    table, ids = store.learning.table(run.id)
     world = world_of(run.spec)
-    setting = world.verification(spec, run.spec, int(table.times_used.sum()))
     # A camera that is not there, or cannot be calibrated, is found before anything is recorded.
-    calibration = setting.calibration
-    number = 0
-    if update:
-        made_with = versions(world, spec.sensor)
-        number = store.verifications.begin(run.id, spec, made_with, now(), calibration)
-    done = []
-    for record, truth in _replications(spec, table, setting):
-        row_id = ids[record.row.step]
+    calibration = world.verification(spec, run.spec, 0).calibration
+    with store.turn() if update else nullcontext():
+        table, ids = store.learning.table(run.id)
+        setting = world.verification(spec, run.spec, int(table.times_used.sum()))
+        number = 0
         if update:
-            store.verifications.save(number, record, truth, row_id)
-        done.append(record)
-        yield JudgedTry(record, row_id, region_of(run.spec.held, record.row))
-    if update:
-        store.verifications.end(number, Evidence.of(done).verdict, decided_after(done), now())
+            made_with = versions(world, spec.sensor)
+            number = store.verifications.begin(run.id, spec, made_with, now(), calibration)
+        done = []
+        for record, truth in _replications(spec, table, setting):
+            row_id = ids[record.row.step]
+            if update:
+                store.verifications.save(number, record, truth, row_id)
+            done.append(record)
+            yield JudgedTry(record, row_id, region_of(run.spec.held, record.row))
+        if update:
+            verdict, decided = Evidence.of(done).verdict, decided_after(done)
+            store.verifications.end(number, verdict, decided, now())

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from affcli.store.copying import backup
     from affcli.store.environment import Fact, State, environment_facts
     from affcli.store.health import DatabaseInfo, Finding, check, database_info
+    from affcli.store.lock_retry import tell_of_waiting
     from affcli.store.opening import Store, open_store, upgrade
     from affcli.store.packing import PackedRobot, pack_robot
     from affcli.store.query import QueryResult, run_sql
@@ -30,11 +31,13 @@ __all__ = [
     "open_store",
     "pack_robot",
     "run_sql",
+    "tell_of_waiting",
     "upgrade",
 ]
 
 _HOMES = {
     "copying": ("backup",),
+    "lock_retry": ("tell_of_waiting",),
     "environment": ("Fact", "State", "environment_facts"),
     "health": ("DatabaseInfo", "Finding", "check", "database_info"),
     "opening": ("Store", "open_store", "upgrade"),

@@ -69,7 +69,13 @@ class Database:
 
     @contextmanager
     def _transaction(self, begin: str) -> Iterator[sa.Connection]:
-        """Begin, and at the end commit; roll back whatever goes wrong, ctrl-C too."""
+        """Begin, and at the end commit; roll back whatever goes wrong, ctrl-C too.
+
+        Within a transaction that is open already it is a part of that one.
+        """
+        if self._driver.in_transaction:
+            yield self._connection
+            return
         with faults_named(self.path, self._timeout):
             try:
                 self._say(begin)
@@ -85,7 +91,9 @@ class Database:
     def _say(self, statement: str) -> None:
         """Execute a statement that may have to wait for a lock."""
         # Through SQLAlchemy, so that Alembic sees that a transaction has begun and begins none.
-        retried(lambda: self._connection.exec_driver_sql(statement).close(), self._timeout)
+        retried(
+            lambda: self._connection.exec_driver_sql(statement).close(), self._timeout, self.path
+        )
 
 
 def insert_many(

@@ -52,7 +52,7 @@ def _fill(part: Path, driver: sqlite3.Connection, path: Path, copy: Path, timeou
     """Write a checked copy of an opened database into an empty file."""
     with faults_named(copy, timeout), closing(sqlite3.connect(part)) as target:
         # All pages in one step, under one read lock: the database at one moment.
-        retried(lambda: driver.backup(target, pages=-1), timeout)
+        retried(lambda: driver.backup(target, pages=-1), timeout, path)
         # A copy of a WAL database would need two more files beside it.
         target.execute("PRAGMA journal_mode = delete")
         verdict = target.execute("PRAGMA integrity_check(1)").fetchone()[0]

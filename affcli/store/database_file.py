@@ -116,7 +116,7 @@ def one_state(driver: sqlite3.Connection, path: Path, timeout: float) -> Iterato
         driver.execute("BEGIN")
         try:
             # BEGIN takes no lock; the first read does.
-            retried(lambda: driver.execute("SELECT 1 FROM sqlite_master"), timeout)
+            retried(lambda: driver.execute("SELECT 1 FROM sqlite_master"), timeout, path)
             yield
         finally:
             if driver.in_transaction:

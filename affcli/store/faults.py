@@ -73,7 +73,7 @@ def faults_named(path: Path, waited: float) -> Iterator[None]:
         code = result_code(error)
         if is_busy(error):
             raise DatabaseError(
-                f"{one_line(path)}: locked for more than {waited:g} s by {_lock_holder(path)}; "
+                f"{one_line(path)}: locked for more than {waited:g} s by {lock_holder(path)}; "
                 "wait until it is done, then run the command again"
             ) from error
         if str(getattr(error, "orig", error)).startswith(NO_TEXT):
@@ -89,7 +89,7 @@ def faults_named(path: Path, waited: float) -> Iterator[None]:
         raise
 
 
-def _lock_holder(path: Path) -> str:
+def lock_holder(path: Path) -> str:
     """Name the process that holds a lock on the file, where the system tells (Linux)."""
     inodes = set()
     for name in (path, Path(f"{path}-shm")):

@@ -2,9 +2,11 @@
 
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import TypeVar
 
-from affcli.store.faults import is_busy
+from affcli.errors import one_line
+from affcli.store.faults import is_busy, lock_holder
 
 T = TypeVar("T")
 
@@ -16,17 +18,34 @@ ATTEMPT = 0.25
 waits: with the whole wait in one attempt, ctrl-C would be heard half a minute late."""
 
 
-def retried(action: Callable[[], T], seconds: float) -> T:
+SILENT = 5.0
+"""Seconds of waiting after which it is said for whom."""
+
+_listeners: list[Callable[[str], object]] = []
+
+
+def tell_of_waiting(say: Callable[[str], object]) -> None:
+    """Have `say` told, once in each wait of more than `SILENT` seconds, for whom it is waited."""
+    _listeners.append(say)
+
+
+def retried(action: Callable[[], T], seconds: float, path: Path) -> T:
     """Return what `action` gives, asking again while another process holds the lock.
 
     Args:
         action: raises SQLite's error when the lock is held.
         seconds: after these the error goes through.
+        path: the database, to find out who holds it.
     """
-    deadline = time.monotonic() + seconds
+    began, told = time.monotonic(), False
     while True:
         try:
             return action()
         except Exception as error:
-            if not is_busy(error) or time.monotonic() >= deadline:
+            waited = time.monotonic() - began
+            if not is_busy(error) or waited >= seconds:
                 raise
+            if waited >= SILENT and not told:
+                told = True
+                for say in _listeners:
+                    say(f"waiting for {lock_holder(path)}, which holds {one_line(path)}")

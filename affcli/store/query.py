@@ -95,7 +95,7 @@ def run_sql(
         require_current(require_something(look(driver, path, timeout), path), path)
     with opened(path, "ro", timeout) as driver, faults_named(path, timeout):
         _confine(driver)
-        return retried(lambda: _run(driver, text, max_seconds, max_rows), timeout)
+        return retried(lambda: _run(driver, text, max_seconds, max_rows), timeout, path)
 
 
 def _confine(driver: sqlite3.Connection) -> None:
