@@ -73,7 +73,7 @@ class Database:
 
         Within a transaction that is open already it is a part of that one.
         """
-        if self._driver.in_transaction:
+        if self._is_within():
             yield self._connection
             return
         with faults_named(self.path, self._timeout):
@@ -85,8 +85,12 @@ class Database:
             finally:
                 # A signal that interrupts a statement makes SQLAlchemy close the connection.
                 with suppress(sqlite3.Error):
-                    if self._driver.in_transaction:
+                    if self._is_within():
                         self._driver.execute("ROLLBACK")
+
+    def _is_within(self) -> bool:
+        """Tell whether a transaction is open now."""
+        return self._driver.in_transaction
 
     def _say(self, statement: str) -> None:
         """Execute a statement that may have to wait for a lock."""

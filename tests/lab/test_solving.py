@@ -10,8 +10,9 @@ from affcli.core.records import LearningRunInfo, StoredStep
 from affcli.core.specs import Counters
 from affcli.core.trial import Outcome
 from affcli.errors import AffcliError, BadInputError, UsageError
+from affcli.lab.replaying import replay_trial
 from affcli.lab.solving import SolvedStep, SolvedTrial
-from affcli.store import Store, run_sql
+from affcli.store import Store, open_store, run_sql
 from tests.lab.quick import IMPATIENT, counted, solving, spec_of, stored, taken
 
 GOALS = ("1", "2", "3", "4")
@@ -74,17 +75,48 @@ def test_each_trial_starts_from_the_counters_that_the_one_before_it_left(
     assert sum(used.values()) > len(used)
 
 
-def test_a_step_is_in_the_store_before_it_is_told(store: Store, run: LearningRunInfo) -> None:
-    """Nothing told is lost: a command that is stopped after a step has saved that step."""
+def test_a_trial_is_in_the_store_before_its_steps_are_told(
+    store: Store, run: LearningRunInfo
+) -> None:
+    """Nothing told is lost: a command that is stopped after a trial has saved that trial, whole."""
     told: list[SolvedStep] = []
     for event in solving(store, run):
         if isinstance(event, SolvedStep):
             told.append(event)
+            kept = store.trials.trials()[-1]
+            assert kept.outcome is not None
+            assert len(store.trials.steps(kept.id)) == kept.steps
+        else:
             assert_counters_are_those_of_the_steps(store, run, told)
-        if len(told) == 5:
             break
-    assert len(told) == 5
-    assert_counters_are_those_of_the_steps(store, run, told)
+    assert told
+
+
+def test_a_trial_that_is_stopped_leaves_nothing(
+    store: Store, run: LearningRunInfo, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is read, done and counted in a trial is one whole."""
+
+    def stop(*args: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("affcli.store.trials.Trials.end", stop)
+    with pytest.raises(KeyboardInterrupt):
+        list(solving(store, run))
+    assert store.trials.trials() == ()
+    assert_counters_are_those_of_the_steps(store, run, [])
+
+
+def test_two_who_solve_with_one_table_take_turns(store: Store, run: LearningRunInfo) -> None:
+    """Between the trials of one, another does its own; each begins with what the others left."""
+    with open_store(store.path, create=False, write=True) as other:
+        one, two = solving(store, run, "1"), solving(other, run, "2")
+        for _ in range(4):
+            for events in (one, two):
+                next(event for event in events if isinstance(event, SolvedTrial))
+    trials = store.trials.trials()
+    assert [t.spec.goal for t in trials] == ["1", "2"] * 4
+    assert not any(replay_trial(store, trial.id).differences for trial in trials)
 
 
 def test_a_trial_of_each_tool_and_start_ends_and_is_kept(
