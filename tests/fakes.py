@@ -1,13 +1,14 @@
-"""Named fakes of the three protocols in `affcli.core.ports`: a table without physics or noise.
+"""Named fakes of the protocols in `affcli.core.ports`: a table without physics or noise.
 
-The three share a `FakeTable`. What a behavior does to the attractor, which wrist positions are in
-reach and when lowering the tool is blocked are scripted by the test.
+Robot, sensor and experimenter share a `FakeTable`. What a behavior does to the attractor, which
+wrist positions are in reach and when lowering the tool is blocked are scripted by the test.
 """
 
 import math
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import repeat
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,7 @@ from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Observation
 from affcli.core.task import GoalRegion
 from affcli.core.tool import Color
+from affcli.core.trial import BabblingRecord
 from tests.factories import TOOL_COLOR, observation
 
 Effect = Callable[[BehaviorCall], tuple[float, float]]
@@ -192,3 +194,38 @@ class FakeExperimenter:
     def put_attractor_for(self, row: Affordance) -> None:
         self.table.attractor = next(iter(self.places))
         self.put_for.append(row)
+
+
+@dataclass(slots=True)
+class FakeExplorer:
+    """An `Explorer` that tries one behavior at places of a list, and writes down what it hears.
+
+    Attributes:
+        offsets: where the attractor may stand to the wrist, the same each time.
+        call: what it tries.
+        heard: what it was asked and told, in order, with the argument that matters.
+    """
+
+    offsets: Sequence[tuple[float, float]]
+    call: BehaviorCall
+    heard: list[tuple[str, object]] = field(default_factory=list)
+
+    def places(self, seen: Observation) -> NDArray[np.float64]:
+        self.heard.append(("places", seen.object_position))
+        return np.array(self.offsets)
+
+    def refused(self, place: Point) -> None:
+        self.heard.append(("refused", place))
+
+    def behavior(self, place: Point, start: Observation) -> BehaviorCall:
+        self.heard.append(("behavior", place))
+        return self.call
+
+    def tell(self, record: BabblingRecord) -> None:
+        self.heard.append(("tell", record.step))
+
+    def state(self) -> dict[str, Any]:
+        return {"heard": len(self.heard)}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        self.heard = [("restored", None)] * int(state["heard"])

@@ -12,11 +12,8 @@ Inherit from a suite and give the fixtures that its docstring names; pytest does
 The suites need pytest; nothing else in affcli does.
 """
 
+from pkgutil import iter_modules
+
 import pytest
 
-pytest.register_assert_rewrite(
-    *(
-        f"{__name__}.{port}"
-        for port in ("experimenter", "explorer", "goal", "planner", "robot", "sensor", "world")
-    )
-)
+pytest.register_assert_rewrite(*(f"{__name__}.{suite.name}" for suite in iter_modules(__path__)))

@@ -11,10 +11,11 @@ from affcli.core.geometry import Point
 from affcli.core.ports import Experimenter, Robot, Sensor
 from affcli.testing import examples
 from affcli.testing.experimenter import ExperimenterContract
+from affcli.testing.explorer import ExplorerContract, MakeExplorer
 from affcli.testing.robot import RobotContract
 from affcli.testing.sensor import SensorContract
 from tests.factories import BINDING, goal_at
-from tests.fakes import FakeExperimenter, FakeRobot, FakeSensor, FakeTable
+from tests.fakes import FakeExperimenter, FakeExplorer, FakeRobot, FakeSensor, FakeTable
 
 
 class OnTheFakeTable:
@@ -68,3 +69,9 @@ class TestFakeExperimenter(OnTheFakeTable, ExperimenterContract):
     @pytest.fixture
     def row(self) -> Affordance:
         return examples.rows(3)[0]
+
+
+class TestFakeExplorer(ExplorerContract):
+    @pytest.fixture
+    def make_explorer(self) -> MakeExplorer:
+        return lambda rng: FakeExplorer([(0.0, 8.0), (1.0, 9.0)], examples.CALLS[0])

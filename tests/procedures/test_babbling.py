@@ -1,7 +1,6 @@
 """Behavioral babbling against a table without physics (§3.2, §6)."""
 
-import math
-from collections import Counter
+from collections.abc import Iterable
 from dataclasses import replace
 from itertools import count, islice, repeat
 
@@ -18,9 +17,10 @@ from affcli.core.geometry import Point
 from affcli.core.trial import BabblingRecord
 from affcli.exploration.random_babbling import RandomBabbling
 from affcli.procedures.babbling import BabblingState, babble
-from tests.factories import BINDING, EIGHTH, observation, places
+from tests.factories import BINDING, EIGHTH, EXTEND_5, observation, places
 from tests.fakes import (
     FakeExperimenter,
+    FakeExplorer,
     FakeRobot,
     FakeSensor,
     FakeTable,
@@ -148,52 +148,6 @@ def test_position_wrist_aims_by_the_latest_observation_and_o_s_is_taken_after_it
         assert offset.y == pytest.approx(record.placing.call["y"])
 
 
-@settings(deadline=None)
-@given(st.integers(0, 2**32), st.floats(0.1, 20.0), st.floats(0.1, 20.0), st.floats(0.1, 20.0))
-def test_offsets_are_drawn_from_one_box_whatever_the_tool(
-    seed: int, width: float, low: float, height: float
-) -> None:
-    """§4, Fig. 4: the shape of the tool "is not required and used": one box serves all."""
-    box = replace(BOX, offset_x_max=width, offset_y_min=low, offset_y_max=low + height)
-    for record in babbling(5, seed=seed, box=box):
-        assert -width <= record.placing.call["x"] <= width
-        assert low <= record.placing.call["y"] <= low + height
-
-
-def test_offsets_fill_the_box_evenly() -> None:
-    """Kolmogorov-Smirnov: the largest gap between the distribution drawn and a uniform one is of
-    the order 1 / sqrt(n); 2.5 / sqrt(n) is exceeded in one of 100,000 honest runs."""
-    n = 2000
-    records = babbling(n, seed=7)
-    x = [(record.placing.call["x"] / BOX.offset_x_max + 1.0) / 2.0 for record in records]
-    height = BOX.offset_y_max - BOX.offset_y_min
-    y = [(record.placing.call["y"] - BOX.offset_y_min) / height for record in records]
-    for shares in (sorted(x), sorted(y)):
-        gap = max(abs(share - (k + 0.5) / n) for k, share in enumerate(shares))
-        assert gap < 2.5 / math.sqrt(n)
-    assert abs(float(np.corrcoef(x, y)[0, 1])) < 5.0 / math.sqrt(n)
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_every_behavior_and_distance_is_chosen_about_equally_often(seed: int) -> None:
-    """§3.2: babbling "picks binding and exploratory behaviors at random": four behaviors, two
-    distances each. Chi-square of seven degrees of freedom exceeds 40 once in a million runs."""
-    n = 4000
-    drawn = Counter(record.execution.call for record in babbling(n, seed=seed))
-    assert set(drawn) == set(CALLS)
-    assert len(CALLS) == 8
-    even = n / len(CALLS)
-    assert sum((times - even) ** 2 / even for times in drawn.values()) < 40.0
-
-
-def test_the_behavior_chosen_does_not_depend_on_the_one_before() -> None:
-    """Chi-square of 49 degrees of freedom over pairs exceeds 120 once in ten million runs."""
-    calls = [record.execution.call for record in babbling(6400, seed=3)]
-    pairs = Counter(zip(calls[::2], calls[1::2], strict=True))
-    even = 3200 / 64
-    assert sum((pairs[a, b] - even) ** 2 / even for a in CALLS for b in CALLS) < 120.0
-
-
 @settings(deadline=None, max_examples=30)
 @given(st.integers(0, 2**63 - 1))
 def test_the_same_seed_gives_the_same_records(seed: int) -> None:
@@ -298,3 +252,44 @@ def test_babbling_has_no_end_of_its_own() -> None:
     )
     last = next(islice(records, 2999, None))
     assert last.step == 3000
+
+
+def heard(robot: FakeRobot, behaviors: int, back: Iterable[Point] = ()) -> list[tuple[str, object]]:
+    """Return what an explorer of two places is asked and told."""
+    explorer = FakeExplorer([(0.0, 8.0), (2.0, 9.0)], EXTEND_5)
+    experimenter = FakeExperimenter(robot.table, lost=lambda at: at.y > 50.0, places=back)
+    running = babble(
+        *(robot, FakeSensor(robot.table), experimenter, BINDING, explorer, BabblingState())
+    )
+    assert len(list(islice(running, behaviors))) == behaviors
+    return explorer.heard
+
+
+def test_an_explorer_is_asked_for_places_and_a_behavior_and_told_what_came_of_it() -> None:
+    at, place = Point(0.0, 24.0), Point(0.0, 8.0)
+    one = [("places", at), ("behavior", place)]
+    expected = [*one, ("tell", 1), *one, ("tell", 2)]
+    assert heard(FakeRobot(FakeTable(attractor=at)), 2) == expected
+
+
+def test_an_explorer_is_told_of_refused_places_and_asked_for_others_after_all_were() -> None:
+    at, back = Point(0.0, 24.0), Point(3.0, 22.0)
+    robot = FakeRobot(FakeTable(attractor=at), placings=[BLOCKED, BLOCKED, BLOCKED, DONE])
+    first, second = Point(0.0, 8.0), Point(2.0, 9.0)
+    assert heard(robot, 1, [back]) == [
+        *(("places", at), ("refused", first), ("refused", second)),
+        *(("places", back), ("refused", first), ("behavior", second), ("tell", 1)),
+    ]
+
+
+def test_an_explorer_is_not_told_of_places_that_the_arm_cannot_take_up() -> None:
+    at = Point(0.0, 24.0)
+    robot = FakeRobot(FakeTable(attractor=at), reachable=lambda wrist: wrist.x < 0.0)
+    expected = [("places", at), ("behavior", Point(2.0, 9.0)), ("tell", 1)]
+    assert heard(robot, 1) == expected
+
+
+def test_an_explorer_is_asked_again_when_the_attractor_was_lost() -> None:
+    back = Point(3.0, 22.0)
+    robot = FakeRobot(FakeTable(attractor=Point(0.0, 60.0)))
+    assert heard(robot, 1, [back])[0] == ("places", back)

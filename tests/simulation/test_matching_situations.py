@@ -194,3 +194,11 @@ def test_a_row_made_where_it_was_made_replicates_to_the_bit() -> None:
         assert setting.sensor.observe() == row.start
         setting.robot.execute(row.exploratory, row.start)
         assert setting.sensor.observe() == row.end
+
+
+@pytest.mark.parametrize("truncated", [False, True])
+def test_a_row_keeps_how_far_the_wrist_went(truncated: bool) -> None:
+    """By the joint encoders; seen without noise it is the same."""
+    for row in rows_of("t-hook", truncated=truncated):
+        assert math.hypot(*row.travel) == pytest.approx(distance_gone(row), abs=HAIR)
+        assert row.wrist_angle == 0.0
