@@ -5,33 +5,48 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from affcli.lab.sensing import calibration_of, eye_of, sensor_for
-from affcli.simulation.world import World
 
-from affcli.config import Settings, settings_from_json, settings_with, with_sensor
+from affcli.config import Settings, settings_from, settings_with, with_sensor
 from affcli.core.observation import SENSOR_KINDS, SensorKind
-from affcli.core.trial import LearningSpec, Protocol
 from affcli.lab.breaking import break_tool
 from affcli.lab.learning import learn
 from affcli.lab.learning_run import LearningRun
-from affcli.lab.reproduction import one_robot, reproduce
-from affcli.lab.solving import SolvedTrial, solve
-from affcli.lab.trials import trial_specs, whole_trial
+from affcli.lab.reproduction import Reproduced, one_robot, reproduce
+from affcli.lab.run_parts import RunParts
+from affcli.lab.solving import SolvedTrial
+from affcli.lab.trials import whole_trial
 from affcli.perception.camera import Camera
+from affcli.simulation.sensing import SimulatedSight, eye_of
+from affcli.simulation.table_world import TableWorld
 from affcli.store import Store, run_sql
-from tests.factories import bench_with
-from tests.lab.quick import LEISURELY, now, spec_of, table_from
+from tests.factories import learning_spec, setting_with, tool_named, trial_spec
+from tests.lab.quick import (
+    LEISURELY,
+    PLANNER,
+    learned,
+    now,
+    solving,
+    spec_of,
+    stored,
+    table_from,
+)
 
 SEEING = with_sensor(Settings(), "camera")
 QUICK = with_sensor(LEISURELY, "camera")
 
 
+def sight_of(kind: SensorKind, seed: int = 0, robot: int = 0) -> SimulatedSight:
+    """Return what a robot sees through."""
+    usual = Settings()
+    place = (usual.sensor, usual.camera, usual.workspace, tool_named("t-hook"))
+    return SimulatedSight(kind, *place, seed, robot)
+
+
 def test_each_kind_of_sensor_sees_the_same_table_with_its_own_error() -> None:
-    look = bench_with("t-hook").world.scene
+    look = setting_with("t-hook").scene()
     off: dict[SensorKind, float] = {}
     for kind in SENSOR_KINDS:
-        settings = with_sensor(Settings(), kind)
-        sensor = sensor_for(settings, lambda: look, np.random.default_rng(0), 0, 0)
+        sensor = sight_of(kind).sensor(lambda: look, np.random.default_rng(0))
         seen = [sensor.observe() for _ in range(30)]
         errors = [np.subtract(one.object_position, look.attractor.point) for one in seen]
         off[kind] = float(np.sqrt(np.mean(np.square(errors))))
@@ -45,21 +60,22 @@ def test_the_default_noise_is_the_camera_s_own_error() -> None:
     else."""
     squares = []
     for tool, seed in (("t-hook", 901), ("l-stick", 902)):
-        run = LearningRun(LearningSpec(tool, seed, 0, None, 150, SEEING.to_json()))
+        run = LearningRun(learning_spec(tool, seed=seed, behaviors=150, settings=SEEING))
         for record, truth in run.steps():
+            assert truth is not None
             wrist = (
                 record.end.object_x - record.end.wrist_to_object_x,
                 record.end.object_y - record.end.wrist_to_object_y,
             )
             squares.append(np.subtract(record.end.object_position, truth.end.point) ** 2)
-            squares.append(np.subtract(wrist, record.execution.wrist_end) ** 2)
+            squares.append(np.subtract(wrist, record.execution.wrist_end.point) ** 2)
     rms = float(np.sqrt(np.mean(squares)))
     assert Settings().sensor.position_noise == pytest.approx(rms, rel=0.3)
 
 
 def test_a_camera_run_that_is_stopped_goes_on_as_if_it_had_not_been() -> None:
-    spec = spec_of("l-hook", behaviors=60, settings=SEEING)
-    whole = list(LearningRun(spec).steps())
+    spec = spec_of("l-hook", behaviors=40, settings=SEEING)
+    whole = list(learned(spec))
     first = LearningRun(spec)
     steps = first.steps()
     begun = [next(steps) for _ in range(25)]
@@ -68,26 +84,27 @@ def test_a_camera_run_that_is_stopped_goes_on_as_if_it_had_not_been() -> None:
 
 
 def test_a_robot_s_calibration_is_its_own() -> None:
-    same = calibration_of(SEEING, 4, 2)
-    assert same == calibration_of(SEEING, 4, 2)
+    same = sight_of("camera", 4, 2).calibration
+    assert same == sight_of("camera", 4, 2).calibration
     assert same is not None
-    others = {calibration_of(SEEING, seed, robot) for seed, robot in ((5, 2), (4, 3))}
+    others = {sight_of("camera", seed, robot).calibration for seed, robot in ((5, 2), (4, 3))}
     assert len(others | {same}) == 3
-    assert Camera.from_json(json.loads(same)) == eye_of(SEEING, 4, 2).calibration.camera
-    assert calibration_of(Settings(), 4, 2) is None
-    assert calibration_of(with_sensor(Settings(), "exact"), 4, 2) is None
+    eye = eye_of(SEEING.camera, SEEING.workspace, tool_named("t-hook"), 4, 2)
+    assert Camera.from_json(json.loads(same)) == eye.calibration.camera
+    assert sight_of("noisy").calibration is None
+    assert sight_of("exact").calibration is None
 
 
 def test_the_calibration_is_stored_with_the_run_and_with_its_trials(store: Store) -> None:
-    learned = learn(store, spec_of(behaviors=300, settings=SEEING), now)
-    list(solve(store, [learned.info], 3, [3], 0, now))
-    list(solve(store, [learned.info], 3, [3], 0, now, "exact"))
+    info = learn(store, spec_of(behaviors=100, settings=SEEING), now).info
+    list(solving(store, info, "3", "3"))
+    list(solving(store, info, "3", "3", sensor="exact"))
     (run,) = run_sql(store.path, "select calibration, versions from learning_run").rows
-    assert run[0] == calibration_of(SEEING, 0, 0)
+    assert run[0] == sight_of("camera").calibration
     assert {"opencv-python-headless", "scipy"} <= set(json.loads(str(run[1])))
     trials = run_sql(store.path, "select sensor, calibration from trial order by id").rows
     assert trials == (("camera", run[0]), ("exact", None))
-    kinds = "select json_extract(settings, '$.sensor.kind') from session order by id"
+    kinds = "select sensor from session order by id"
     assert run_sql(store.path, kinds).rows == (("camera",), ("exact",))
 
 
@@ -96,42 +113,42 @@ def test_a_table_learned_through_one_sensor_serves_through_another(
     kind: SensorKind, store: Store
 ) -> None:
     """Search 1 works on colours as the camera measures them, too."""
-    learned = learn(store, spec_of(behaviors=400), now)
+    run = stored(store, spec_of(behaviors=400))
     (trial,) = (
         event
-        for event in solve(store, [learned.info], 3, [3], 0, now, kind)
+        for event in solving(store, run, "3", "3", sensor=kind)
         if isinstance(event, SolvedTrial)
     )
     assert trial.solved
-    (left,) = run_sql(store.path, "select min(rows_consistent) from step").rows
-    assert left == (learned.info.rows,)
+    left = {step.reasons[0] for step in store.trials.steps(trial.id)}
+    assert {(reason.name, reason.rows) for reason in left} == {("consistent", run.rows)}
 
 
 def test_the_broken_tool_is_met_through_the_camera(store: Store) -> None:
     quick = settings_with({"trial": {"max_steps": 3}}, "a test")
-    learned = learn(store, spec_of(behaviors=200, settings=quick), now)
-    trials = [t for _, t in break_tool(store, learned.info, "l-hook", 0, now, "camera")]
+    run = stored(store, spec_of(behaviors=200, settings=quick))
+    found = break_tool(store, run, tool_named("l-hook"), 0, now, PLANNER, "camera")
+    trials = [trial for _, trial, _ in found]
     assert len(trials) == 32
     assert {trial.spec.sensor for trial in trials} == {"camera"}
-    stored = "select distinct sensor, calibration is not null from trial"
-    assert run_sql(store.path, stored).rows == (("camera", 1),)
+    kept = "select distinct sensor, calibration is not null from trial"
+    assert run_sql(store.path, kept).rows == (("camera", 1),)
 
 
-def test_a_trial_is_a_function_of_its_spec(store: Store) -> None:
-    steps = tuple(LearningRun(spec_of(behaviors=300, settings=SEEING)).steps())
-    table = table_from(steps)
-    world = World(SEEING.workspace, SEEING.physics)
-    protocol = Protocol.EXTENSION_OF_REACH
-    spec = trial_specs(protocol, "t-hook", "t-hook", 0, 0, "camera")[14]
-    first, second = (whole_trial(spec, SEEING, table, world) for _ in range(2))
+def test_a_trial_is_a_function_of_its_spec() -> None:
+    run = spec_of(behaviors=100, settings=SEEING)
+    table, world = table_from(learned(run)), TableWorld(SEEING)
+    spec = trial_spec(run, goal="4", start="3")
+    first, second = (whole_trial(spec, run, table, world) for _ in range(2))
     assert first == second
-    through_noise = whole_trial(replace(spec, sensor="noisy"), SEEING, table, world)
+    through_noise = whole_trial(replace(spec, sensor="noisy"), run, table, world)
     assert through_noise.steps != first.steps
 
 
 def test_robots_that_see_are_the_same_on_any_number_of_workers(store: Store) -> None:
-    session, *_ = reproduce(store, QUICK, 2, 3, 2, now)
-    alone = one_robot(QUICK, 3, 1)
+    what = Reproduced(RunParts.chosen(QUICK), PLANNER, 3, hours=0.2)
+    session, *_ = reproduce(store, what, 2, 2, now)
+    alone = one_robot(what, 1)
     seen = (
         "select count(*), sum(end_object_x) from behavior join learning_run on id = "
         f"learning_run_id where robot = 1 and session_id = {session}"
@@ -148,6 +165,6 @@ def test_robots_that_see_are_the_same_on_any_number_of_workers(store: Store) -> 
 def test_a_sensor_is_part_of_the_settings() -> None:
     for kind in SENSOR_KINDS:
         settings = with_sensor(Settings(), kind)
-        assert settings_from_json(settings.to_json()) == settings
+        assert with_sensor(settings_from(settings.differing()), kind) == settings
         assert settings == settings_with({"sensor": {"kind": kind}}, "a test")
     assert with_sensor(SEEING, None) is SEEING

@@ -3,34 +3,33 @@
 import numpy as np
 import pytest
 
-from affcli.config import Settings, settings_from_json
+from affcli.config import Settings
+from affcli.core.geometry import Pose
+from affcli.core.records import StepScene
 from affcli.core.scene import Scene
 from affcli.errors import UsageError
 from affcli.lab.filming import FRAME_RATE
-from affcli.lab.learning import learn
-from affcli.lab.solving import solve
+from affcli.lab.run_parts import settings_of
 from affcli.lab.viewing import scenes_of_step, view_of_step, view_of_table
-from affcli.store import StepScene, Store, run_sql
-from tests.lab.quick import now, spec_of
+from affcli.store import Store
+from tests.lab.quick import counted, solving, spec_of, stored
 
 
 @pytest.fixture
 def steps(store: Store) -> list[StepScene]:
     """The steps of a trial with the T-hook."""
-    learned = learn(store, spec_of(behaviors=400), now)
-    list(solve(store, [learned.info], 1, [1], 0, now))
-    (count,) = run_sql(store.path, "select steps from trial").rows[0]
-    assert isinstance(count, int)
-    return [store.step_scene(1, number) for number in range(1, count + 1)]
+    counted(solving(store, stored(store, spec_of(behaviors=400)), "1", "1"))
+    count = len(store.trials.steps(1))
+    return [store.trials.scene(1, number) for number in range(1, count + 1)]
 
 
 def test_a_film_of_a_step_runs_from_its_beginning_to_its_end(steps: list[StepScene]) -> None:
     """15 frames a robot second; the tool is carried lifted, and the puck moves as it did then."""
     assert steps
     for step in steps:
-        film = scenes_of_step(step, settings_from_json(step.settings))
+        film = scenes_of_step(step)
         first, last = film[0], film[-1]
-        home = settings_from_json(step.settings).workspace.wrist_start
+        home = Pose(*settings_of(step.learned).workspace.wrist_start)
         assert first.wrist == pytest.approx(step.wrist_before or home, abs=1e-5)
         assert first.attractor.point == step.attractor_start
         if step.blocked:
@@ -48,22 +47,22 @@ def test_a_film_of_a_step_runs_from_its_beginning_to_its_end(steps: list[StepSce
 
 def test_a_film_of_a_babbled_behavior(store: Store) -> None:
     """Any behavior can be seen again, those of learning too."""
-    info = learn(store, spec_of("l-stick", behaviors=40), now).info
+    info = stored(store, spec_of("l-stick", behaviors=40))
     with pytest.raises(UsageError, match="no behavior 41 in run 1; it has 1 to 40"):
-        store.behavior_scene(info.id, 41)
+        store.learning.scene(info.id, 41)
     with pytest.raises(UsageError, match="no learning run 2; they are numbered 1 to 1"):
-        store.behavior_scene(2, 1)
-    for step in (store.behavior_scene(info.id, number) for number in range(1, 41)):
-        film = scenes_of_step(step, settings_from_json(step.settings))
+        store.learning.scene(2, 1)
+    for step in (store.learning.scene(info.id, number) for number in range(1, 41)):
+        film = scenes_of_step(step)
         assert film[-1].attractor.point == pytest.approx(step.attractor_end, abs=0.02)
         assert film[-1].goal is None
-    last = store.behavior_scene(info.id, 40)
+    last = store.learning.scene(info.id, 40)
     assert "Run 1, behavior 40 of 40, after" in view_of_step(last, after=True).title
 
 
 def largest_leap(film: list[Scene]) -> float:
     """Return how far the wrist moves between two frames at the most (in)."""
-    places = np.array([scene.wrist for scene in film])
+    places = np.array([scene.wrist.point for scene in film])
     return float(np.linalg.norm(np.diff(places, axis=0), axis=1).max())
 
 
@@ -87,6 +86,6 @@ def test_a_view_is_the_same_every_time() -> None:
 @pytest.mark.usefixtures("steps")
 def test_steps_and_trials_that_are_not_there(store: Store) -> None:
     with pytest.raises(UsageError, match="no trial 9; they are numbered 1 to 1"):
-        store.step_scene(9, 1)
+        store.trials.scene(9, 1)
     with pytest.raises(UsageError, match="no step 99 in trial 1; it has steps 1 to"):
-        store.step_scene(1, 99)
+        store.trials.scene(1, 99)
