@@ -1,5 +1,6 @@
 """Files that commands write where the user asks for them."""
 
+import tempfile
 from collections.abc import Collection
 from pathlib import Path
 
@@ -13,6 +14,8 @@ def require_new(
     path: Path, *, force: bool, endings: Collection[str] = (), dash: bool = False
 ) -> None:
     """Refuse to write over something, before any work is done for it.
+
+    Where there is no other folder for temporary files, that of `path` is used from now on.
 
     Args:
         path: where a command is asked to write.
@@ -42,6 +45,11 @@ def require_new(
         raise BadInputError(f"{shown}: name it {wanted}")
     if not folder:
         raise BadInputError(f"{shown}: its folder does not exist; make it, or name another file")
+    try:
+        tempfile.gettempdir()
+    except FileNotFoundError:
+        # Libraries want a folder for their caches; this is the only one that can be written.
+        tempfile.tempdir = str(path.absolute().parent)
 
 
 def save(path: Path, data: bytes) -> None:

@@ -2,7 +2,6 @@
 
 import io
 import json
-import math
 import os
 import sys
 import time
@@ -72,8 +71,10 @@ def show_text(text: str) -> None:
 
 
 def show_json(value: Any) -> None:
-    """Write JSON to stdout; a number that is not finite becomes null."""
-    show_text(json.dumps(_finite(value), indent=2) + "\n")
+    """Write JSON to stdout, as any reader knows it (see `report.json_table.plain`)."""
+    from affcli.report.json_table import plain
+
+    show_text(json.dumps(plain(value), indent=2) + "\n")
 
 
 def show_either(
@@ -243,14 +244,3 @@ def _write(stream: TextIO, text: str) -> None:
             raise AffcliError(
                 f"the output cannot be written: {error.strerror}; write it elsewhere"
             ) from error
-
-
-def _finite(value: Any) -> Any:
-    """Return `value` with every number that is not finite replaced by None."""
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(item) for item in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value

@@ -3,12 +3,13 @@
 from importlib.util import find_spec
 
 from affcli.errors import UsageError
+from affcli.report.figures.loading import load_matplotlib
 
 FIGURE_PACKAGES = ("matplotlib", "PIL")
 
 
 def require_figures() -> None:
-    """Make sure that the packages which draw figures are installed.
+    """Make sure that the packages which draw figures are installed, and load Matplotlib.
 
     Raises:
         UsageError: one is missing.
@@ -18,3 +19,4 @@ def require_figures() -> None:
         raise UsageError(
             "figures need Matplotlib and Pillow; install them: pip install 'affcli[figures]'"
         )
+    load_matplotlib()

@@ -92,7 +92,7 @@ def test_json_of_every_kind_of_value(learned: Path) -> None:
     query = """select 1 as a, 2.5 as b, 'x' as c, null as d, x'00ff' as e, 9e999 as f, -9e999 as g,
         9e999 - 9e999 as h, 9223372036854775807 as i, char(27, 0, 10) as j, 'ä' as k"""
     (row,) = done("sql", query, "--json", "--db", learned).json
-    values = [1, 2.5, "x", None, "00ff", None, None, None, 2**63 - 1, "\x1b\x00\n", "ä"]
+    values = [1, 2.5, "x", None, "00ff", None, None, None, str(2**63 - 1), "\x1b\x00\n", "ä"]
     assert row == dict(zip("abcdefghijk", values, strict=True))
 
 
@@ -170,3 +170,12 @@ def test_a_table_too_large_to_be_looked_at_is_drawn_in_part(learned: Path) -> No
     assert "only the first 333 rows are shown" in drawn.err
     assert "--json or --csv" in drawn.err
     assert done("sql", wide, "--csv", "--db", learned).out.count("\n") == 5001
+
+
+def test_a_large_seed_is_the_same_in_json_and_csv(tmp_path: Path) -> None:
+    """A reader that takes numbers for doubles would read another seed: another robot."""
+    path, seed = tmp_path / "my.db", "9007199254740993"
+    done("learn", "--tool", "stick", "--behaviors", "5", "--seed", seed, "--db", path)
+    query = "select seed, robot from learning_run"
+    assert done("sql", query, "--json", "--db", path).json == [{"seed": seed, "robot": 0}]
+    assert f"{seed},0" in done("sql", query, "--csv", "--db", path).out

@@ -1,0 +1,57 @@
+"""What is around the program, and meant for others, decides nothing: variables, caches, folders."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.cli.program import ROOT, Ended, environment, names_in
+
+NOWHERE = """
+import sys, tempfile
+tempfile._candidate_tempdir_list = lambda: ["/proc"]
+from affcli.cli.main import main
+sys.exit(main())
+"""
+"""A program that finds no folder for temporary files."""
+
+
+def drawn(folder: Path, *python: str, **changes: str) -> Ended:
+    """Draw a figure as a shell does, with other variables."""
+    ended = subprocess.run(
+        [sys.executable, *python, "figure", "tools", "--out", str(folder / "a.pdf")],
+        cwd=ROOT,
+        env=environment(**changes),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    return Ended(ended.returncode, ended.stdout, ended.stderr)
+
+
+def said(folder: Path) -> Ended:
+    """Return how a figure ends that nothing disturbs."""
+    return Ended(0, "", f"5 tools, and a t-hook that became l-hook: {folder / 'a.pdf'}\n")
+
+
+@pytest.mark.parametrize(
+    "backend", ["module://matplotlib_inline.backend_inline", "QtAgg", "nonsense"]
+)
+def test_a_notebooks_backend_does_not_matter(backend: str, tmp_path: Path) -> None:
+    """Every notebook exports one, to programs that it starts too."""
+    assert drawn(tmp_path, "-m", "affcli", MPLBACKEND=backend) == said(tmp_path)
+
+
+def test_nothing_but_the_folder_of_the_figure_can_be_written(tmp_path: Path) -> None:
+    """No home, no cache, no folder for temporary files: the figure, and not a word of that."""
+    home = dict.fromkeys(("HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "TMPDIR"), "/proc/none")
+    assert drawn(tmp_path, "-c", NOWHERE, **home) == said(tmp_path)
+    assert names_in(tmp_path) == ["a.pdf"]
+
+
+def test_a_cache_that_cannot_be_made_is_not_spoken_of(tmp_path: Path) -> None:
+    ended = drawn(tmp_path, "-m", "affcli", MPLCONFIGDIR="/proc/none", TMPDIR=str(tmp_path))
+    assert ended == said(tmp_path)
+    assert (tmp_path / "a.pdf").read_bytes().startswith(b"%PDF")
+    assert names_in(tmp_path) == ["a.pdf"]
