@@ -78,9 +78,9 @@ def main() -> None:
         args.json.write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
 
 
-def successes(path: Path) -> dict[tuple[str, str, int], dict[int, int]]:
+def successes(path: Path) -> dict[tuple[str, str, str], dict[int, int]]:
     """Return the successes of each robot, by protocol, tool and goal."""
-    found: dict[tuple[str, str, int], dict[int, int]] = {}
+    found: dict[tuple[str, str, str], dict[int, int]] = {}
     with closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True)) as database:
         for protocol in ("extension of reach", "tool adaptation"):
             for tool, goal, robot, solved in database.execute(SOLVED, (protocol,)):
@@ -88,15 +88,15 @@ def successes(path: Path) -> dict[tuple[str, str, int], dict[int, int]]:
     return found
 
 
-def robots_of(found: dict[tuple[str, str, int], dict[int, int]]) -> set[int]:
+def robots_of(found: dict[tuple[str, str, str], dict[int, int]]) -> set[int]:
     """Return the robots that have successes in every cell."""
     return set.intersection(*map(set, found.values())) if found else set()
 
 
 def write_pairs(
     path: Path,
-    first: dict[tuple[str, str, int], dict[int, int]],
-    second: dict[tuple[str, str, int], dict[int, int]],
+    first: dict[tuple[str, str, str], dict[int, int]],
+    second: dict[tuple[str, str, str], dict[int, int]],
     robots: list[int],
 ) -> None:
     """Write the successes of each robot in each cell, in both databases."""

@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from affcli.config import Settings, with_sensor
-from affcli.core.tool import TOOL_PARTS
-from affcli.core.trial import LearningSpec
+from affcli.core.specs import LearningSpec
 from affcli.lab.learning_run import LearningRun
+from affcli.lab.run_parts import RunParts
+from affcli.simulation.tools.paper import TOOL_PARTS
 
 
 def main() -> None:
@@ -24,11 +25,10 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=900)
     parser.add_argument("--behaviors", type=int, default=400, help="for each tool")
     args = parser.parse_args()
-    settings = with_sensor(Settings(), "camera").to_json()
+    parts = RunParts.chosen(with_sensor(Settings(), "camera"))
     places, tints = [], []
     for robot, tool in enumerate(TOOL_PARTS):
-        spec = LearningSpec(tool, args.seed, robot, None, args.behaviors, settings)
-        found, colors = errors(spec)
+        found, colors = errors(parts.spec(tool, args.seed, robot, None, args.behaviors))
         places.append(found)
         # Colours are compared with each other: their mean is what the robot takes for the colour.
         tints.append(colors - colors.mean(axis=0))
@@ -49,6 +49,8 @@ def errors(spec: LearningSpec) -> tuple[NDArray[np.float64], NDArray[np.float64]
     run = LearningRun(spec)
     places, colors = [], []
     for record, truth in run.steps():
+        if truth is None:
+            raise LookupError(f"the world {spec.world} does not tell where the attractor is")
         moves = (
             (record.start, truth.start, record.execution.wrist_start),
             (record.end, truth.end, record.execution.wrist_end),
@@ -57,7 +59,7 @@ def errors(spec: LearningSpec) -> tuple[NDArray[np.float64], NDArray[np.float64]
             x, y = seen.object_x, seen.object_y
             seen_wrist = (x - seen.wrist_to_object_x, y - seen.wrist_to_object_y)
             places.append(
-                (x - attractor.x, y - attractor.y, *np.subtract(seen_wrist, wrist).tolist())
+                (x - attractor.x, y - attractor.y, *np.subtract(seen_wrist, wrist.point).tolist())
             )
             colors.append(seen.colors)
     return np.array(places), np.array(colors)

@@ -17,14 +17,13 @@ from pathlib import Path
 from statistics import fmean
 from typing import Any
 
-from affcli.report.paper import EXTENSION_OF_REACH, TOTAL
-
+from affcli.analysis.paper import EXTENSION_OF_REACH, GOALS, TOTAL
 from affcli.config import settings_with
-from affcli.core.task import GOAL_NUMBERS
-from affcli.core.tool import TOOL_PARTS
+from affcli.core.identity import Component
 from affcli.core.trial import Outcome
 from affcli.errors import AffcliError
-from affcli.lab.reproduction import one_robot
+from affcli.lab.reproduction import Reproduced, one_robot
+from affcli.lab.run_parts import RunParts
 
 OPEN_SIZES = (
     ("arm", "flange_height", 0.5, 2.5),
@@ -56,7 +55,7 @@ SEEDS = (100, 101, 102, 103, 104, 105)
 """Seeds of the search, one after the other; never used to report."""
 
 Geometry = dict[str, dict[str, float]]
-Counts = dict[tuple[str, str, int], int]
+Counts = dict[tuple[str, str, str], int]
 
 
 def main() -> None:
@@ -117,7 +116,8 @@ def successes(job: tuple[Geometry, int, int]) -> Counts | None:
     """Return one robot's successes by (tool, shape, goal); None for an impossible geometry."""
     chosen, seed, robot = job
     try:
-        life = one_robot(settings_with(chosen, "search"), seed, robot)
+        parts = RunParts.chosen(settings_with(chosen, "search"))
+        life = one_robot(Reproduced(parts, Component("nested-query"), seed), robot)
     except AffcliError:
         return None
     counts: Counts = {}
@@ -136,22 +136,18 @@ def loss(robots: list[Counts | None]) -> float:
     good = [r for r in robots if r is not None]
     if len(good) < len(robots):
         return 200.0
-    mean: dict[tuple[str, int], float] = {
-        (str(tool), goal): fmean(r[str(tool), str(tool), goal] for r in good)
-        for tool in TOOL_PARTS
-        for goal in GOAL_NUMBERS
+    mean = {
+        (tool, goal): fmean(r[tool, tool, goal] for r in good) for tool, goal in EXTENSION_OF_REACH
     }
     value: float = sum(
-        max(0.0, abs(mean[tool, goal] - paper[goal - 1]) - 0.3) ** 2
-        for tool, paper in EXTENSION_OF_REACH.items()
-        for goal in GOAL_NUMBERS
+        max(0.0, abs(mean[cell] - paper) - 0.3) ** 2 for cell, paper in EXTENSION_OF_REACH.items()
     )
     value += 0.02 * max(0.0, TOTAL - sum(mean.values())) ** 2
-    whole = sum(mean["t-hook", goal] for goal in GOAL_NUMBERS)
-    broken = sum(fmean(r["t-hook", "l-hook", goal] for r in good) for goal in GOAL_NUMBERS)
-    value += 0.3 * max(0.0, whole - broken - 0.3) ** 2 + 3.0 * mean["stick", 1]
+    whole = sum(mean["t-hook", goal] for goal in GOALS)
+    broken = sum(fmean(r["t-hook", "l-hook", goal] for r in good) for goal in GOALS)
+    value += 0.3 * max(0.0, whole - broken - 0.3) ** 2 + 3.0 * mean["stick", "1"]
     for tool in ("stick", "l-stick"):
-        value += max(0.0, mean[tool, 2] - mean["t-hook", 2] + 0.3)
+        value += max(0.0, mean[tool, "2"] - mean["t-hook", "2"] + 0.3)
     return value
 
 

@@ -11,14 +11,13 @@ import math
 from collections.abc import Sequence
 from itertools import product
 
-from measure import CHANGED, INTACT, PUSHES, Life, learned, lives
+from measure import CHANGED, INTACT, PUSHES, Life, hour_of, learned, lives, tested
 
-from affcli.config import Settings
-from affcli.core.tool import TOOL_PARTS
 from affcli.core.trial import BabblingRecord
 from affcli.core.verification import BOUND
-from affcli.lab.predicting import PredictionSpec, fresh_pushes
+from affcli.lab.predicting import fresh_pushes
 from affcli.planning.prediction import TablePredictor
+from affcli.simulation.tools.paper import TOOL_PARTS
 
 SHARES = tuple(product((0.02, 0.03, 0.05), (0.10, 0.15, 0.20)))
 """Pairs of failure rates told apart: intact, changed."""
@@ -68,11 +67,10 @@ def first_verdict(tries: Sequence[bool], intact: float, changed: float) -> tuple
 
 def show_radii(robots: range, seed: int) -> None:
     """Print hits, false alarms and right answers for each radius, over all tools."""
-    settings = Settings()
     asked = []
-    for tool, robot in product(map(str, TOOL_PARTS), robots):
-        spec = PredictionSpec(tool, tool, seed, robot, "noisy", PUSHES)
-        asked.append((learned(tool, seed, robot, settings), list(fresh_pushes(spec, settings))))
+    for tool, robot in product(TOOL_PARTS, robots):
+        run = hour_of(tool, seed, robot, "noisy")
+        asked.append((learned(run), list(fresh_pushes(tested(run, tool, PUSHES), run))))
     print(f"{len(robots)} robots a tool, {PUSHES} pushes each")
     for radius in RADII:
         counts = [counted(TablePredictor(rows, radius), pushes) for rows, pushes in asked]
@@ -85,7 +83,7 @@ def show_radii(robots: range, seed: int) -> None:
 
 
 def counted(table: TablePredictor, pushes: Sequence[BabblingRecord]) -> tuple[int, int, int, int]:
-    """Return how many pushes moved, were foretold to; did not, were foretold to."""
+    """Return how many pushes moved, were predicted to; did not, were predicted to."""
     said = [
         (
             push.affordance is not None,
@@ -93,8 +91,8 @@ def counted(table: TablePredictor, pushes: Sequence[BabblingRecord]) -> tuple[in
         )
         for push in pushes
     ]
-    moved = [foretold for happened, foretold in said if happened]
-    still = [foretold for happened, foretold in said if not happened]
+    moved = [predicted for happened, predicted in said if happened]
+    still = [predicted for happened, predicted in said if not happened]
     return len(moved), sum(moved), len(still), sum(still)
 
 

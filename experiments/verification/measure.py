@@ -19,20 +19,21 @@ from pathlib import Path
 from statistics import fmean, median, stdev
 from typing import Any, NamedTuple
 
-from affcli.lab.bench import tool_named
-from affcli.report.statistics import quantile, wilson
-
+from affcli.analysis.prediction import STAGES, Push, Score
+from affcli.analysis.regions import region_of
+from affcli.analysis.statistics import quantile, wilson
 from affcli.config import Settings, with_sensor
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.observation import SensorKind
-from affcli.core.tool import TOOL_PARTS
-from affcli.core.trial import LearningSpec
-from affcli.core.verification import Evidence, Verdict, VerificationSpec
+from affcli.core.specs import LearningSpec, VerificationSpec
+from affcli.core.verification import Evidence, Verdict
 from affcli.lab.learning_run import LearningRun
-from affcli.lab.predicting import Oracle, PredictionSpec, fresh_pushes
+from affcli.lab.predicting import StagedTable, fresh_pushes
+from affcli.lab.run_parts import RunParts, tool_of
 from affcli.lab.verifying import replications
-from affcli.report.prediction import LEARNED_FROM, PREDICTORS, Push, Score
+from affcli.report.prediction import PREDICTORS
+from affcli.simulation.tools.paper import TOOL_PARTS
 
 INTACT = tuple((str(tool), str(tool)) for tool in TOOL_PARTS)
 CHANGED = (
@@ -63,7 +64,7 @@ class Life:
 
     Attributes:
         tried: for each tool and shape what each try gave, in order.
-        pushes: for each tool what was foretold of its pushes, and what was seen.
+        pushes: for each tool what was predicted of its pushes, and what was seen.
     """
 
     tried: dict[tuple[str, str], list[Tried]] = field(default_factory=dict)
@@ -107,33 +108,39 @@ def lives(robots: int, seed: int, sensor: SensorKind, workers: int) -> list[Life
 
 def live(robot: int, seed: int, sensor: SensorKind) -> Life:
     """Have one robot learn the five tools, test each table, and be asked what pushes will do."""
-    settings = with_sensor(Settings(), sensor)
     life = Life()
-    rows = {str(tool): learned(str(tool), seed, robot, settings) for tool in TOOL_PARTS}
+    runs = {str(tool): hour_of(tool, seed, robot, sensor) for tool in TOOL_PARTS}
+    rows = {tool: learned(run) for tool, run in runs.items()}
     for tool, shape in (*INTACT, *CHANGED):
-        spec = VerificationSpec(
-            tool, shape, seed, robot, sensor, len(rows[tool]), until_verdict=False
-        )
-        whole = tool_named(settings, tool)
+        run, table = runs[tool], AffordanceTable(rows[tool])
         life.tried[tool, shape] = [
-            Tried(
-                record.replicated,
-                record.execution is None,
-                whole.part_nearest(record.row.start.wrist_to_object).name,
-            )
-            for record, _ in replications(spec, settings, AffordanceTable(rows[tool]))
+            Tried(record.replicated, record.execution is None, region_of(run.held, record.row))
+            for record, _ in replications(tested(run, shape, len(table)), run, table)
         ]
-    for tool, mine in rows.items():
-        oracle = Oracle(mine)
-        pushes = fresh_pushes(PredictionSpec(tool, tool, seed, robot, sensor, PUSHES), settings)
-        life.pushes[tool] = [oracle.push(record) for record in pushes]
+    for tool, run in runs.items():
+        staged = StagedTable(rows[tool])
+        pushes = fresh_pushes(tested(run, tool, PUSHES), run)
+        life.pushes[tool] = [staged.push(record) for record in pushes]
     return life
 
 
-def learned(tool: str, seed: int, robot: int, settings: Settings) -> list[Affordance]:
+def hour_of(tool: str, seed: int, robot: int, sensor: SensorKind) -> LearningSpec:
+    """Return a robot's hour with a tool."""
+    parts = RunParts.chosen(with_sensor(Settings(), sensor))
+    return parts.spec(tool, seed, robot, 1.0)
+
+
+def tested(run: LearningSpec, shape: str, tries: int) -> VerificationSpec:
+    """Return so many tries of what a run learned, with another shape held or the same."""
+    held = tool_of(run, shape)
+    return VerificationSpec(
+        *(run.tool, held, run.seed, run.robot, run.sensor, tries), until_verdict=False
+    )
+
+
+def learned(run: LearningSpec) -> list[Affordance]:
     """Return the rows that an hour of babbling gives."""
-    spec = LearningSpec(tool, seed, robot, 1.0, None, settings.to_json())
-    return [r.affordance for r, _ in LearningRun(spec).steps() if r.affordance is not None]
+    return [r.affordance for r, _ in LearningRun(run).steps() if r.affordance is not None]
 
 
 def verification(tried: Sequence[Sequence[Tried]]) -> dict[str, Any]:
@@ -208,10 +215,10 @@ def regions(tried: Sequence[Sequence[Tried]]) -> dict[str, Any]:
 
 def prediction(pushes: Sequence[Sequence[Push]]) -> dict[str, Any]:
     """Return how well tables predict that were learned from so many rows; means over robots."""
-    stages: dict[str, list[Score]] = {str(rows): [] for rows in LEARNED_FROM}
+    stages: dict[str, list[Score]] = {str(rows): [] for rows in STAGES}
     stages["all"] = []
     for robot in pushes:
-        known = sorted(robot[0].foretold)
+        known = sorted(robot[0].predicted)
         for rows in known:
             stages["all" if rows == known[-1] else str(rows)].append(Score.of(robot, rows))
     return {name: summary(scores) for name, scores in stages.items() if scores}

@@ -21,7 +21,6 @@ from affcli.simulation.table_world import TableWorld
 from affcli.store import Store, run_sql
 from tests.factories import learning_spec, setting_with, tool_named, trial_spec
 from tests.lab.quick import (
-    LEISURELY,
     PLANNER,
     learned,
     now,
@@ -32,7 +31,9 @@ from tests.lab.quick import (
 )
 
 SEEING = with_sensor(Settings(), "camera")
-QUICK = with_sensor(LEISURELY, "camera")
+QUICK = with_sensor(
+    settings_with({"motion": {"hold": 40.0}, "trial": {"max_steps": 1}}, "a test"), "camera"
+)
 
 
 def sight_of(kind: SensorKind, seed: int = 0, robot: int = 0) -> SimulatedSight:
