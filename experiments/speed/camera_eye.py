@@ -8,20 +8,23 @@ from typing import Any
 
 import cv2
 import numpy as np
-from affcli.lab.sensing import eye_of
 from measuring import AFFCLI, ROUNDS, Scale, command
 
-from affcli.config import Settings, with_sensor
-from affcli.core.trial import LearningSpec
+from affcli import registry
+from affcli.config import Settings
 from affcli.lab.learning_run import LearningRun
+from affcli.lab.run_parts import RunParts
 from affcli.perception.camera_sensor import Eye
 from affcli.perception.palette import ColorClass
 from affcli.perception.rendering import Picture
+from affcli.simulation.sensing import eye_of
 
 
 def bench_camera(scale: Scale) -> dict[str, Any]:
     """Segmentation and location against plain OpenCV, and a robot hour seen through the camera."""
-    eye = eye_of(with_sensor(Settings(), "camera"), 0, 0)
+    usual = Settings()
+    tool = registry.tool("t-hook", usual.workspace.tools)
+    eye = eye_of(usual.camera, usual.workspace, tool, 0, 0)
     pictures = babbled_pictures(eye, scale.of(60, 3))
     ratios, rates = [], []
     for _ in range(scale.of(ROUNDS, 1)):
@@ -55,9 +58,9 @@ def bench_camera(scale: Scale) -> dict[str, Any]:
 
 def babbled_pictures(eye: Eye, behaviors: int) -> list[Picture]:
     """Return what the camera sees after each of some babbled behaviors."""
-    spec = LearningSpec("t-hook", 0, 0, None, behaviors, Settings().to_json())
-    run, rng = LearningRun(spec), np.random.default_rng(0)
-    return [eye.renderer.take(run.bench.world.scene, rng) for _ in run.steps()]
+    run = LearningRun(RunParts.chosen(Settings()).spec("t-hook", 0, 0, None, behaviors))
+    scenes, rng = (run.setting.scene() for _ in run.steps()), np.random.default_rng(0)
+    return [eye.renderer.take(scene, rng) for scene in scenes if scene is not None]
 
 
 def plain_opencv(picture: Picture, classes: Sequence[ColorClass]) -> list[Any]:

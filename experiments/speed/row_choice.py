@@ -8,29 +8,31 @@ from typing import Any
 
 import numpy as np
 import sqlalchemy as sa
-from affcli.simulation.world import World
 from measuring import Scale, bar, verdict
 from workload import SETTINGS
 
+from affcli.behaviors.moving import EXTEND_ARM
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import COLOR_TOLERANCE, AffordanceTable
-from affcli.core.behavior import EXTEND_ARM, GRASP, BehaviorCall
+from affcli.core.behavior import GRASP, BehaviorCall
+from affcli.core.choice import Situation
 from affcli.core.geometry import Point
 from affcli.core.observation import Observation
 from affcli.core.task import GoalRegion
-from affcli.planning.nested_query import choose_row
+from affcli.planning.nested_query import NestedQuery
 from affcli.simulation.robot import SimulatedRobot
+from affcli.simulation.table import Table
 
 BARS = {1_000: 0.05, 100_000: 0.5, 1_000_000: 10.0}
 """Milliseconds by number of rows."""
 AGAINST_SQL, TIMES_AS_FAST = 100_000, 100.0
-GOAL = GoalRegion(1, Point(0.0, 15.0), 2.4)
+GOAL = GoalRegion("1", Point(0.0, 15.0), 2.4)
 COLORS = (240.0, 120.0, 20.0, 40.0, 160.0, 70.0)
 
 
 def bench_query(scale: Scale) -> dict[str, Any]:
     """Choosing a row and counting its use, in milliseconds, from tables of growing size."""
-    robot = SimulatedRobot(World(SETTINGS.workspace, SETTINGS.physics), {})
+    robot = SimulatedRobot(Table(SETTINGS.workspace, SETTINGS.physics), ())
     seen = observations([0.5] * 6)[0]
     figures, bars = {}, {}
     against: dict[str, Any] = {}
@@ -39,7 +41,7 @@ def bench_query(scale: Scale) -> dict[str, Any]:
 
         def use(table: AffordanceTable = table) -> int | None:
             """Choose a row and count that it was used."""
-            position = choose_row(table, seen, GOAL, robot).position
+            position = chosen(table, seen, robot)
             if position is not None:
                 table.count_use(position, success=True)
             return position
@@ -85,7 +87,7 @@ def against_sql(
         )
 
         def by_sql() -> int | None:
-            """Choose a row as `choose_row` does."""
+            """Choose a row as the planner does."""
             found = connection.execute(wanted).all()
             reached = robot.reaches(
                 np.array([seen.object_x - row[3] for row in found]),
@@ -102,11 +104,17 @@ def against_sql(
             return int(best[0]) - 1
 
         slow = median_ms(by_sql, scale.of(5, 1))
-        same = by_sql() == choose_row(table, seen, GOAL, robot).position
+        same = by_sql() == chosen(table, seen, robot)
     if not same:
         raise AssertionError("SQL and a sort choose another row")
-    quick = median_ms(lambda: choose_row(table, seen, GOAL, robot), scale.of(50, 2))
+    quick = median_ms(lambda: chosen(table, seen, robot), scale.of(50, 2))
     return {"ratio": slow / quick, "ms": slow, **bar(slow / quick, least=TIMES_AS_FAST)}
+
+
+def chosen(table: AffordanceTable, seen: Observation, robot: SimulatedRobot) -> int | None:
+    """Return the position of the row that the paper's planner chooses."""
+    situation = Situation(table, seen, GOAL, robot.wrist, robot.reaches)
+    return NestedQuery().choose(situation).position
 
 
 def median_ms(work: Callable[[], object], times: int) -> float:

@@ -11,19 +11,19 @@ from typing import Any
 from measuring import ROUNDS, Scale, Took, bar, took, verdict
 
 from affcli.config import Settings
-from affcli.core.tool import TOOL_PARTS
-from affcli.core.trial import LearningSpec
+from affcli.core.specs import LearningSpec, LearningStep
 from affcli.lab.learning import CHUNK, learn
 from affcli.lab.learning_run import LearningRun
-from affcli.lab.versions import versions
-from affcli.store import LearningStep, Store, open_store
+from affcli.lab.run_parts import RunParts
+from affcli.simulation.tools.paper import TOOL_PARTS
+from affcli.store import Store, open_store
 
+PARTS = RunParts.chosen(Settings())
 NOW = "2026-01-01T00:00:00+00:00"
 
 
 def bench_hours(scale: Scale) -> dict[str, Any]:
     """Robot hours a wall second of learning, with the store, on one core."""
-    text = Settings().to_json()
     hours, behaviors = (None, 20) if scale.tiny else (1.0, None)
     times: list[Took] = []
     lived, done, touches = 0.0, 0, 0
@@ -33,11 +33,11 @@ def bench_hours(scale: Scale) -> dict[str, Any]:
             path = Path(folder) / f"{seed}.db"
             with open_store(path, create=True, write=True) as store:
                 for tool in TOOL_PARTS:
-                    spec = LearningSpec(tool, seed, 0, hours, behaviors, text)
+                    spec = PARTS.spec(tool, seed, 0, hours, behaviors)
                     times.append(took(learn, store, spec, lambda: NOW)[0])
                     by_tool[tool] = by_tool.get(tool, 0.0) + times[-1].wall
-                lived += sum(run.robot_seconds for run in store.learning_runs()) / 3600.0
-                done += sum(run.behaviors for run in store.learning_runs())
+                lived += sum(run.robot_seconds for run in store.learning.runs()) / 3600.0
+                done += sum(run.behaviors for run in store.learning.runs())
                 touches += touched(store)
     wall, cpu = sum(t.wall for t in times), sum(t.cpu for t in times)
     held = bar(lived / wall, least=15.0)
@@ -60,15 +60,14 @@ def touched(store: Store) -> int:
     """Return how many behaviors truly moved the attractor."""
     # By the driver: no call of the store counts them.
     moved = "true_start_x <> true_end_x OR true_start_y <> true_end_y"
-    with store.reading() as connection:
+    with store.database.reading() as connection:
         rows = connection.exec_driver_sql(f"SELECT count(*) FROM behavior WHERE {moved}")  # noqa: S608
         return int(rows.scalar_one())
 
 
 def bench_storing(scale: Scale) -> dict[str, Any]:
     """Rows a second by the call that `learn` saves a chunk with, mapping and commit included."""
-    text = Settings().to_json()
-    spec = LearningSpec("t-hook", 0, 0, None, scale.of(5_000, 20), text)
+    spec = PARTS.spec("t-hook", 0, 0, None, scale.of(5_000, 20))
     steps = list(LearningRun(spec).steps())
     made = sum(record.affordance is not None for record, _ in steps)
     rates: dict[str, list[float]] = {"bulk": [], "chunks": []}
@@ -93,10 +92,10 @@ def bench_storing(scale: Scale) -> dict[str, Any]:
 
 def store_all(store: Store, spec: LearningSpec, steps: Sequence[LearningStep], size: int) -> float:
     """Store a run, `size` behaviors at a time; return the seconds it took."""
-    info = store.begin_learning(spec, versions("simulated"), NOW)
+    info = store.learning.begin(spec, {}, NOW)
     start = time.perf_counter()
     for at in range(0, len(steps), size):
-        store.append_learning(
+        store.learning.append(
             info.id,
             at,
             steps[at : at + size],
@@ -110,7 +109,6 @@ def store_all(store: Store, spec: LearningSpec, steps: Sequence[LearningStep], s
 
 def bench_growth(scale: Scale) -> dict[str, Any]:
     """Time a behavior from a thousand behaviors on; a million with --full."""
-    text = Settings().to_json()
     counts: tuple[int, ...] = (20, 40) if scale.tiny else (1_000, 10_000, 100_000)
     counts += (1_000_000,) if scale.full and not scale.tiny else ()
     each: dict[int, float] = {}
@@ -122,7 +120,7 @@ def bench_growth(scale: Scale) -> dict[str, Any]:
             cpu = 0.0
             with open_store(path, create=True, write=True) as store:
                 for seed in range(repeats):
-                    spec = LearningSpec("t-hook", seed, 0, None, count, text)
+                    spec = PARTS.spec("t-hook", seed, 0, None, count)
                     cpu += took(learn, store, spec, lambda: NOW)[0].cpu
             each[count] = 1e6 * cpu / (repeats * count)
     growth = each[counts[-1]] / each[counts[0]]

@@ -7,9 +7,10 @@ import numpy as np
 
 from affcli.config import Settings
 from affcli.core.geometry import ConvexPolygon, Point, Pose, near_any
-from affcli.core.tool import ToolName, paper_tools
+from affcli.core.tool import ToolName
 from affcli.simulation.contact import travel_to_contact
 from affcli.simulation.pushing import CONTACT_MARGIN, PushSimulator
+from affcli.simulation.tools.paper import paper_tool
 from affcli.simulation.wrist_motion import Stretch, distance_of, on_grid, trapezoid
 
 WORKLOAD = 8_192
@@ -18,9 +19,9 @@ DISTANCE = 5.0
 """How far the tool goes in the pushes that other engines do too (in)."""
 
 SETTINGS = Settings()
-OUTLINES: tuple[ConvexPolygon, ...] = paper_tools(SETTINGS.workspace.tools)[
-    ToolName("t-hook")
-].outlines
+OUTLINES: tuple[ConvexPolygon, ...] = paper_tool(
+    ToolName("t-hook"), SETTINGS.workspace.tools
+).outlines
 
 
 class Push(NamedTuple):
