@@ -1,4 +1,4 @@
-"""A calibration and a picture belong together: how both were turned, zoomed and taken must agree."""
+"""A calibration and a picture belong together: both were turned, zoomed and taken alike."""
 
 import json
 import math
