@@ -103,10 +103,11 @@ def calibrate(
     require_camera()
     if image is None:
         found = lab.viewing.eye_at(load_settings(config), seed).calibration
+        values = found.as_json()
     else:
         pattern = lab.photographs.pattern_of(columns, rows, spacing, first, turn)
-        found = lab.photographs.calibrate_picture(image, pattern, color, sensor_width)
-    values = found.as_json()
+        found, capture = lab.photographs.calibrate_picture(image, pattern, color, sensor_width)
+        values = {**found.as_json(), "capture": capture}
     if out is not None:
         save(out, (json.dumps(values, indent=2) + "\n").encode())
         say(f"the calibration is in {one_line(out)}")

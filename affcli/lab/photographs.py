@@ -12,6 +12,8 @@ from affcli.simulation.sensing import require_camera
 
 if TYPE_CHECKING:
     from affcli.perception.calibration import Calibration
+    from affcli.perception.camera import Camera
+    from affcli.perception.capture import Capture
     from affcli.perception.location import Place
     from affcli.perception.markers import Pattern
 
@@ -29,7 +31,7 @@ def pattern_of(columns: int, rows: int, spacing: float, origin: Point, turn: int
 
 def calibrate_picture(
     path: Path, pattern: "Pattern", color: Color | None, sensor_width: float
-) -> "Calibration":
+) -> tuple["Calibration", "Capture"]:
     """Calibrate the camera that took a picture of a pattern of markers.
 
     Args:
@@ -38,23 +40,28 @@ def calibrate_picture(
         color: of the markers; None to find it.
         sensor_width: of the image sensor (mm); it sets the scale of the focal length alone.
 
+    Returns:
+        The calibration of the picture turned upright, and how it was taken.
+
     Raises:
         BadInputError: the picture cannot be read, shows no such pattern, or gives no calibration.
     """
     require_camera()
     from affcli.perception.calibration import calibrate
     from affcli.perception.camera import ImageSensor
-    from affcli.perception.images import read_picture, shrunk, unshrunk
+    from affcli.perception.images import read_photograph, shrunk, unshrunk
     from affcli.perception.markers import find_markers
 
-    picture = read_picture(path)
+    photograph = read_photograph(path)
+    picture = photograph.upright
     height, width = picture.shape[:2]
     try:
         small, side = shrunk(picture)
         markers = unshrunk(find_markers(small, pattern, color), side)
-        return calibrate(markers, pattern.places, ImageSensor(width, height, sensor_width))
+        found = calibrate(markers, pattern.places, ImageSensor(width, height, sensor_width))
     except BadInputError as error:
         raise BadInputError(f"{one_line(path)}: {error}") from error
+    return found, photograph.capture
 
 
 def locate_in_picture(
@@ -68,35 +75,25 @@ def locate_in_picture(
         colors: a TOML file of colour classes; None for those of the simulated table.
 
     Raises:
-        BadInputError: a file cannot be read, the picture is of another size than the calibration's,
-            or no colour is seen at all.
+        BadInputError: a file cannot be read, the picture was not taken as the calibration's, or no
+            colour is seen at all.
     """
     require_camera()
-    from affcli.perception.camera import Camera
-    from affcli.perception.images import read_picture, shrunk
+    from affcli.perception.capture import orientation_for
+    from affcli.perception.images import read_photograph, shrunk
     from affcli.perception.location import places_of
     from affcli.perception.segmentation import Segmenter
 
     classes = load_colors(colors)
-    try:
-        camera = Camera.from_json(_json(calibration))
-    except KeyError as error:
-        raise BadInputError(
-            f"{one_line(calibration)}: not a calibration (no {one_line(error)} in it); make one "
-            "with `affcli camera calibrate PICTURE --out FILE`"
-        ) from error
-    except (TypeError, ValueError, OverflowError) as error:
-        raise BadInputError(
-            f"{one_line(calibration)}: not a calibration ({one_line(error)}); make one with "
-            "`affcli camera calibrate PICTURE --out FILE`"
-        ) from error
+    camera, kept = _stored_camera(calibration)
     above = [one.name for one in classes if one.height >= camera.position[2]]
     if colors is not None and above:
         raise BadInputError(
             f"colors: {one_line(above[0], 40)}.height lies above the camera, which is "
             f"{camera.position[2]:.1f} in over the table; give inches over the table"
         )
-    picture = read_picture(path)
+    photograph = read_photograph(path)
+    picture = photograph.turned(orientation_for(photograph.capture, kept, one_line(path)))
     height, width = picture.shape[:2]
     size = (camera.sensor.width_px, camera.sensor.height_px)
     if (width, height) != size:
@@ -113,6 +110,27 @@ def locate_in_picture(
             "its colour as it looks in the picture (--colors)"
         )
     return places
+
+
+def _stored_camera(path: Path) -> tuple["Camera", "Capture | None"]:
+    """Return the camera in a file of a calibration, and how its picture was taken.
+
+    Raises:
+        BadInputError: it cannot be read, or is none.
+    """
+    from affcli.perception.camera import Camera
+    from affcli.perception.capture import checked_capture
+
+    try:
+        values = _json(path)
+        return Camera.from_json(values), checked_capture(values.get("capture"))
+    except UnicodeDecodeError:
+        what, remedy = "it is not UTF-8", "save it as UTF-8"
+    except (KeyError, TypeError, ValueError, OverflowError) as error:
+        missing = isinstance(error, KeyError)
+        what = f"no {one_line(error)} in it" if missing else one_line(error)
+        remedy = "make one with `affcli camera calibrate PICTURE --out FILE`"
+    raise BadInputError(f"{one_line(path)}: not a calibration ({what}); {remedy}")
 
 
 def _json(path: Path) -> dict[str, object]:

@@ -1,17 +1,18 @@
 """Pictures in files: read with care, for anyone may have made them; written whole or not at all."""
 
 import math
-import struct
 import warnings
-from contextlib import suppress
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import cv2
 import numpy as np
-from PIL import ExifTags, Image, UnidentifiedImageError
+from PIL import Image, UnidentifiedImageError
 
 from affcli.errors import BadInputError, one_line
 from affcli.perception.camera import Array
+from affcli.perception.capture import ORIENTATION, UPRIGHT, Capture, capture_of
 from affcli.perception.rendering import Picture
 
 FORMATS = ("PNG", "JPEG")
@@ -20,25 +21,45 @@ TOO_MANY = f"too many pixels; make it smaller than {MOST_PIXELS // 1_000_000} me
 ENOUGH_PIXELS = 3_000_000
 LEAST_SIDE = 32
 """Pixels; nothing could be found in a smaller picture."""
-UNREADABLE = (
-    *(OSError, SyntaxError, ValueError, TypeError, AttributeError, KeyError, IndexError),
-    *(ArithmeticError, struct.error),
-)
-"""What Pillow raises for notes about a picture (EXIF) that make no sense."""
-TURNS = {
-    2: Image.Transpose.FLIP_LEFT_RIGHT,
-    3: Image.Transpose.ROTATE_180,
-    4: Image.Transpose.FLIP_TOP_BOTTOM,
-    5: Image.Transpose.TRANSPOSE,
-    6: Image.Transpose.ROTATE_270,
-    7: Image.Transpose.TRANSVERSE,
-    8: Image.Transpose.ROTATE_90,
+LARGEST_FILE = 200_000_000
+"""Bytes; so many pixels of 16 bits take less without any compression."""
+TURNS: dict[int, Callable[[Picture], Picture]] = {
+    2: np.fliplr,
+    3: lambda stored: np.rot90(stored, 2),
+    4: np.flipud,
+    5: lambda stored: stored.swapaxes(0, 1),
+    6: lambda stored: np.rot90(stored, -1),
+    7: lambda stored: np.rot90(stored, 2).swapaxes(0, 1),
+    8: np.rot90,
 }
-"""By the orientation that EXIF gives."""
+"""How EXIF's orientations turn the pixels that are stored; 1 leaves them."""
 
 
-def read_picture(path: Path) -> Picture:
-    """Return the picture in a PNG or JPEG file, turned upright as its camera says.
+@dataclass(frozen=True, slots=True)
+class Photograph:
+    """A picture from a file.
+
+    Args:
+        stored: its pixels as they are stored.
+        capture: how it was taken, as far as the file says.
+    """
+
+    stored: Picture
+    capture: Capture
+
+    def turned(self, orientation: float) -> Picture:
+        """Return the picture turned as an orientation of EXIF's says."""
+        turn = TURNS.get(int(orientation))
+        return self.stored if turn is None else np.ascontiguousarray(turn(self.stored))
+
+    @property
+    def upright(self) -> Picture:
+        """The picture turned as its camera says that it was held."""
+        return self.turned(float(self.capture.get(ORIENTATION, UPRIGHT)))
+
+
+def read_photograph(path: Path) -> Photograph:
+    """Return the picture in a PNG or JPEG file, and how it was taken.
 
     Transparency is ignored, 16 bits become 8, grey becomes a colourless picture.
 
@@ -50,10 +71,12 @@ def read_picture(path: Path) -> Picture:
         with warnings.catch_warnings():
             # Pillow warns of what it mends and of bombs; sizes are checked before unpacking.
             warnings.simplefilter("ignore")
+            if path.stat().st_size > LARGEST_FILE:
+                raise BadInputError(f"{shown}: more than {LARGEST_FILE} bytes; save it smaller")
             with Image.open(path, formats=FORMATS) as image:
                 _require_size(image, shown)
-                upright = _upright(_eight_bits(image))
-                rgb = np.asarray(upright.convert("RGB"), np.uint8)
+                rgb = np.asarray(_eight_bits(image).convert("RGB"), np.uint8)
+                capture = capture_of(image)
     except Image.DecompressionBombError as error:
         raise BadInputError(f"{shown}: {TOO_MANY}") from error
     except UnidentifiedImageError as error:
@@ -66,7 +89,7 @@ def read_picture(path: Path) -> Picture:
         ) from error
     except (SyntaxError, ValueError) as error:  # what Pillow raises for damaged chunks
         raise BadInputError(f"{shown}: damaged: {one_line(error)}; save it again") from error
-    return np.ascontiguousarray(rgb[:, :, ::-1])
+    return Photograph(np.ascontiguousarray(rgb[:, :, ::-1]), capture)
 
 
 def shrunk(picture: Picture) -> tuple[Picture, int]:
@@ -99,15 +122,6 @@ def _require_size(image: Image.Image, shown: str) -> None:
             f"{shown}: {width}x{height} pixels are too few; give a picture of at least "
             f"{LEAST_SIDE} by {LEAST_SIDE}"
         )
-
-
-def _upright(image: Image.Image) -> Image.Image:
-    """Return a picture turned as the camera that took it says; as it is when that is unreadable."""
-    orientation: object = 1
-    with suppress(*UNREADABLE):
-        orientation = image.getexif().get(ExifTags.Base.Orientation, 1)
-    turn = TURNS.get(orientation) if isinstance(orientation, int) else None
-    return image if turn is None else image.transpose(turn)
 
 
 def _eight_bits(image: Image.Image) -> Image.Image:
