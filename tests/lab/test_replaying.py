@@ -41,7 +41,6 @@ from tests.lab.quick import (
     spec_of,
     stored,
     table_from,
-    taken,
 )
 
 
@@ -114,7 +113,10 @@ def test_a_trial_seen_through_the_camera(store: Store, run: LearningRunInfo) -> 
 
 
 def test_an_interrupted_trial_is_done_as_far_as_it_came(store: Store, run: LearningRunInfo) -> None:
-    taken(solving(store, run, "1", "1"), 2)
+    """Trials are saved whole now; databases of before may hold one that was cut off."""
+    counted(solving(store, run, "1", "1"))
+    altered(store.path, "delete from step where number > 2")
+    altered(store.path, "update trial set outcome = null, steps = null, robot_seconds = null")
     replay = replay_trial(store, 1)
     assert (len(replay.steps), replay.end, replay.differences) == (2, None, ())
 
