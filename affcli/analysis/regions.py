@@ -3,7 +3,7 @@
 from functools import lru_cache
 
 from affcli.core.affordance import Affordance
-from affcli.core.behavior import BehaviorCall
+from affcli.core.behavior import GRASP, BehaviorCall
 from affcli.core.geometry import Point, Pose
 from affcli.core.tool import Tool, ToolPart, hold_of, placed_parts
 
@@ -43,8 +43,8 @@ def parts_at(tool: Tool, binding: BehaviorCall, angle: float) -> tuple[ToolPart,
         angle: of the wrist (rad).
 
     Returns:
-        As many parts as the tool has: none when its shape is not known.
+        As many parts as the tool has: none when its shape, or how it was held, is not known.
     """
-    if not tool.parts:
+    if not tool.parts or binding.name != GRASP:
         return ()
     return placed_parts(tool.held(hold_of(binding)).parts, Pose(0.0, 0.0, angle))

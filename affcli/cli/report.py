@@ -86,7 +86,7 @@ def _as_page(html: Path, robot: int | None, session: int | None, database: Path)
     save(html, page.rendering.render(content, command).encode("utf-8", "backslashreplace"))
     differing = sum(bool(replay.differences) for replay in content.replays)
     say(f"{content.robot}, {len(content.replays)} trials to replay: {one_line(html)}")
-    for number, reason in content.not_replayed.items():
-        say(f"trial {number} is left out: {reason}")
+    for line in page.answers.left_out(content):
+        say(line)
     if differing:
         say(f"{differing} replays DIFFER from their record; see: affcli replay --all")

@@ -20,6 +20,7 @@ from affcli.core.motion import Motion, Slide, Wait
 from affcli.core.observation import Observation
 from affcli.core.tool import hold_of
 from affcli.core.world import Film
+from affcli.errors import BadInputError, one_line
 from affcli.simulation.arm import reach_at
 from affcli.simulation.pushing import Moment
 from affcli.simulation.table import Table
@@ -90,8 +91,19 @@ class SimulatedRobot:
         if call.name == POSITION_WRIST:
             status = self._carry(wrist_target(call, seen))
         else:
-            status = self._run(self._take(call) if call.name == GRASP else self._motions[call])
+            status = self._run(self._motion(call))
         return Execution(call, status, start, self._table.wrist, self.clock - began)
+
+    def _motion(self, call: BehaviorCall) -> Motion:
+        """Return the motion of a grasp or of an exploratory behavior; BadInputError for another."""
+        if call.name == GRASP:
+            return self._take(call)
+        if call not in self._motions:
+            raise BadInputError(
+                f"{one_line(call, 60)}: this robot has no such behavior; install the affcli that "
+                "made the record"
+            )
+        return self._motions[call]
 
     def _take(self, call: BehaviorCall) -> Motion:
         """Take the tool as a grasp says; return the motion, which is a wait."""

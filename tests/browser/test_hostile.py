@@ -32,7 +32,7 @@ def hostile(life_database: Path, tmp_path_factory: pytest.TempPathFactory) -> Pa
         driver.execute("DELETE FROM trial WHERE goal <> 2 OR start <> 3")
         driver.execute("DELETE FROM step WHERE trial_id NOT IN (SELECT id FROM trial)")
         driver.execute("UPDATE learning_run SET versions = ?", (versions,))
-        driver.execute("UPDATE affordance SET tool = ?, binding_behavior = ?", (TEXTS[1], TEXTS[1]))
+        driver.execute("UPDATE affordance SET tool = ?", (TEXTS[1],))
     return path
 
 

@@ -36,7 +36,7 @@ def call(step: dict[str, Any]) -> str:
 def moved(dx: float, dy: float) -> str:
     """Return a movement in words."""
     length = math.hypot(dx, dy)
-    if length < 0.05:
+    if length <= 0.5:
         return "none"
     return f"{length:.1f} in at {round(math.degrees(math.atan2(dy, dx))) % 360} deg"
 
@@ -99,16 +99,17 @@ def test_why_a_row_was_chosen_at_every_step(opened: Opened, path: Path) -> None:
             assert step_shown(page) == number
             row = step["affordance_id"]
             lead = text(why.locator(".answer"))
-            assert lead.startswith(f"Row {row}, {call(step)}: of the {step['rows_nearest']} row")
+            reasons = {one["name"]: one["rows"] for one in json.loads(step["reasons"])}
+            assert lead.startswith(f"Row {row}, {call(step)}: of the {reasons['nearest']} row")
             left = [cell[1] for cell in cells(why.locator(".funnel"))]
             names = ("consistent", "probable", "reachable", "nearest")
-            assert left == [str(step[f"rows_{name}"]) for name in names] + ["1"]
+            assert left == [str(reasons[name]) for name in names] + ["1"]
             assert text(why.locator(".scroll + p")) == outcome(step)
             close = cells(why.locator(".scroll table"))
             probability = f"{step['times_successful_before']}/{step['times_used_before']}"
             assert close[0][:2] == [f"{row} (chosen)", call(step)]
             assert close[0][4] == probability
-            assert len(close) == min(5, step["rows_nearest"])
+            assert len(close) == min(5, reasons["nearest"])
             if number == page.locator("#steps button").count():
                 assert text(why.locator("> p").last).startswith(
                     f"The trial ended: {step['outcome']}"

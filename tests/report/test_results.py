@@ -207,7 +207,7 @@ def test_dollars_are_letters() -> None:
 def test_any_number_of_goals_and_tools_stands_in_rows_that_fit() -> None:
     """Of what the paper does not have, our counts stand alone."""
     cells = {
-        (f"tool {n}", goal): Beside(None if n == 6 else 3, [2, 3], 4)
+        (f"tool {n}", str(goal)): Beside(None if n == 6 else 3, [2, 3], 4)
         for n in range(1, 7)
         for goal in range(1, 10)
         if (n, goal) != (6, 9)

@@ -150,3 +150,14 @@ def same(content: Content) -> str:
         "step: poses, rows and counters."
         + (" Those that differ say so." if equal < len(content.replays) else "")
     )
+
+
+def left_out(content: Content) -> list[str]:
+    """Return which trials this affcli cannot do again, and why."""
+    by_reason: dict[str, list[int]] = {}
+    for number, reason in content.not_replayed.items():
+        by_reason.setdefault(reason, []).append(number)
+    return [
+        f"trial{'s' if len(numbers) > 1 else ''} {', '.join(map(str, numbers))} left out: {reason}"
+        for reason, numbers in by_reason.items()
+    ]

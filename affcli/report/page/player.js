@@ -5,7 +5,11 @@
   const RATE = 15; // frames a robot second
   // The boxes of Fig. 7 before a row is used: the paper's searches, or one for another planner.
   const NESTED = ["observe", "over", "reach", "s1", "s2", "s3", "s4"], OTHER = ["observe", "over", "reach", "choose"];
-  const NAMES = { consistent: "1: seen with these colours", probable: "2: probable enough", reachable: "in the arm's reach", nearest: "3: best by expected distance" };
+  const words = (name, value) => name === "nearest" ? `${+(100 * value).toFixed(1)} %` : value === 0.5 ? "1/2" : String(value);
+  const NAMES = {
+    consistent: () => "1: seen with these colours", probable: (value) => `2: probability over ${words("probable", value)}`,
+    reachable: () => "in the arm's reach", nearest: (value) => `3: best ${words("nearest", value)} by expected distance`,
+  };
   const LIT = 140; // milliseconds that each box is lit for while a row is chosen, at 4x
   const COMPARED = 500; // and the last one, at the end of a step
   const end = () => ({ solved: "over", "attractor out of reach": "reach", "no row left": searches().at(-1) })[trial.outcome]; // the box where a trial ends
@@ -61,7 +65,7 @@
       box.hidden = nested() ? box.dataset.box === "choose" : /^s\d$/.test(box.dataset.box);
     for (const { name, value } of trial.steps[0]?.reasons ?? []) {
       const shown = byId("flow").querySelector(`[data-value="${CSS.escape(name)}"]`);
-      if (shown && value !== null) shown.textContent = name === "nearest" ? `${+(100 * value).toFixed(1)} %` : value === 0.5 ? "1/2" : value;
+      if (shown && value !== null) shown.textContent = words(name, value);
     }
     const planner = trial.planner === "nested-query" ? "" : `, planner ${trial.planner}`;
     const broken = trial.shape === trial.tool ? "" : `, truly the ${trial.shape} (nobody told the robot)`;
@@ -213,7 +217,7 @@
     const funnel = html("table", "", "funnel");
     funnel.append(html("caption", nested() ? "Rows that each search left" : "What the planner went by"));
     const most = Math.max(1, ...step.reasons.map((reason) => reason.rows ?? 0));
-    const reasons = step.reasons.map(({ name, rows, value }) => [(nested() && NAMES[name]) || name, rows, value]);
+    const reasons = step.reasons.map(({ name, rows, value }) => [nested() && NAMES[name] ? NAMES[name](value) : name, rows, value]);
     for (const [name, count, value] of [...reasons, [nested() ? "4: least re-positioning" : "chosen", 1, null]]) {
       const row = funnel.insertRow();
       const head = html("th", name);

@@ -9,7 +9,7 @@ from markupsafe import Markup
 
 from affcli import __version__
 from affcli.analysis.breaking import missing_side
-from affcli.analysis.paper import BROKEN_TRIALS, GOALS, TRIALS, papers_successes
+from affcli.analysis.paper import BROKEN_TRIALS, GOALS, PLANNER, TRIALS, papers_successes
 from affcli.analysis.statistics import ENOUGH_ROBOTS
 from affcli.core.replay import Replay
 from affcli.core.specs import Protocol
@@ -67,6 +67,7 @@ def render(content: Content, command: str) -> str:
         trials=trials,
         planners=len({trial["planner"] for trial in trials}) > 1,
         same=answers.same(content),
+        left_out=answers.left_out(content),
         data={
             "unit": films.UNIT,
             "worlds": [films.world_data(workspace) for workspace in worlds],
@@ -137,12 +138,16 @@ def _single(replays: Sequence[Replay]) -> tuple[list[str], list[tuple[str, list[
     rows: dict[str, dict[str, dict[str, Any]]] = {}
     for replay in ended:
         spec = replay.spec
-        empty = {goal: {"solved": 0, "tried": 0, "paper": None} for goal in goals}
-        cell = rows.setdefault(spec.tool, empty)[spec.goal]
+        usual = str(spec.planner) == PLANNER
+        cells = rows.setdefault(spec.tool if usual else f"{spec.tool}, {spec.planner}", {})
+        cell = cells.setdefault(spec.goal, {"solved": 0, "tried": 0})
         cell["solved"] += replay.end is not None and replay.end.outcome is Outcome.SOLVED
         cell["tried"] += 1
         cell["paper"] = papers_successes(spec)
-    return goals, [(tool, list(cells.values())) for tool, cells in rows.items()]
+    none = {"solved": 0, "tried": 0, "paper": None}
+    return goals, [
+        (name, [cells.get(goal, none) for goal in goals]) for name, cells in rows.items()
+    ]
 
 
 def _tool_section(learned: LearnedRows) -> dict[str, Any]:
