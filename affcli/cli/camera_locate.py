@@ -33,6 +33,9 @@ def locate(
     Without --colors the colours of the simulated table are looked for. In such a file a section
     [cup] with rgb = [30, 110, 200] looks for that colour; height, 0 if not given, is how high over
     the table the middle of what is seen lies (inches).
+
+    The principal point is where the calibration found it. Both pictures must be taken alike: camera
+    in its place, same zoom, crop and lens.
     """
     places = lab.photographs.locate_in_picture(image, calibration, colors)
     show_either(

@@ -47,7 +47,7 @@ def calibrate_picture(
         BadInputError: the picture cannot be read, shows no such pattern, or gives no calibration.
     """
     require_camera()
-    from affcli.perception.calibration import calibrate
+    from affcli.perception.calibration import OFF_CENTER, calibrate
     from affcli.perception.camera import ImageSensor
     from affcli.perception.images import read_photograph, shrunk, unshrunk
     from affcli.perception.markers import find_markers
@@ -58,7 +58,8 @@ def calibrate_picture(
     try:
         small, side = shrunk(picture)
         markers = unshrunk(find_markers(small, pattern, color), side)
-        found = calibrate(markers, pattern.places, ImageSensor(width, height, sensor_width))
+        sensor = ImageSensor(width, height, sensor_width)
+        found = calibrate(markers, pattern.places, sensor, OFF_CENTER * width)
     except BadInputError as error:
         raise BadInputError(f"{one_line(path)}: {error}") from error
     return found, photograph.capture

@@ -4,11 +4,15 @@ A closed form from the radial alignment of each marker, which no radial distorti
 rotation and translation but for the distance; a linear step gives focal length and distance; then
 all eight parameters are refined together by Levenberg and Marquardt's method (MINPACK's, as in the
 code that the paper used).
+
+The method takes the principal point for known. That of a real camera is not: where the markers show
+that it is off the middle it is refined too, and what they leave open of it is in the stated error
+of the focal length.
 """
 
 import json
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -25,6 +29,13 @@ LARGEST_DEVIATION = 0.1
 the view is too nearly from straight above."""
 LEAST_ERROR = 0.1
 """No centroid is known better than this (px), however small the residuals happen to be."""
+OFF_CENTER = 0.04
+"""Choice: how far the principal point of a camera that a person has may lie from the middle of the
+picture (one standard deviation of each coordinate), as a share of the picture's width."""
+CERTAIN = 3.0
+"""Standard deviations by which the principal point must be off the middle to be moved there."""
+ROUNDS = 4
+"""How often the noise is estimated again, against which the principal point is weighed."""
 START_VIEWS = (0.6, 1.0, 1.8)
 """Focal lengths, in widths of the sensor, to start from when the linear step gives none."""
 OUTSIDE = 1e4
@@ -43,6 +54,8 @@ class Calibration:
         rms_px: root mean square of all residuals, per coordinate (px).
         rms_in: the same on the table (in).
         focal_length_deviation: standard deviation of the focal length, as a share of it.
+        principal_deviation_px: standard deviations of the principal point's coordinates (px); None
+            where it was taken for known.
     """
 
     camera: Camera
@@ -52,6 +65,7 @@ class Calibration:
     rms_px: float
     rms_in: float
     focal_length_deviation: float
+    principal_deviation_px: tuple[float, float] | None = None
 
     def as_json(self, *, markers: bool = True) -> dict[str, Any]:
         """Return everything as JSON types.
@@ -62,11 +76,13 @@ class Calibration:
         found = np.column_stack([self.markers, self.places, self.residuals]).tolist()
         names = ("x_px", "y_px", "x_in", "y_in", "residual_x_px", "residual_y_px")
         points = {"markers": [dict(zip(names, row, strict=True)) for row in found]}
+        off = self.principal_deviation_px
         return {
             **self.camera.as_json(),
             "rms_px": self.rms_px,
             "rms_in": self.rms_in,
             "focal_length_deviation": self.focal_length_deviation,
+            **({} if off is None else {"principal_point_deviation_px": list(off)}),
             **(points if markers else {}),
         }
 
@@ -76,13 +92,17 @@ def to_text(calibration: Calibration) -> str:
     return json.dumps(calibration.as_json(markers=False), separators=(",", ":"), allow_nan=False)
 
 
-def calibrate(markers: Array, places: Array, sensor: ImageSensor) -> Calibration:
+def calibrate(
+    markers: Array, places: Array, sensor: ImageSensor, off_center: float = 0.0
+) -> Calibration:
     """Estimate the camera that saw coplanar markers.
 
     Args:
         markers: pixels (n, 2), n at least 6.
         places: where they are on the plane Z = 0 (n, 2), in, table frame.
         sensor: what is known of the camera.
+        off_center: how far the principal point may lie from the middle of the picture (px, one
+            standard deviation of each coordinate); 0 when it is known to lie there.
 
     Raises:
         BadInputError: the view is too nearly from straight above, where focal length and distance
@@ -90,23 +110,40 @@ def calibrate(markers: Array, places: Array, sensor: ImageSensor) -> Calibration
     """
     start = _closed_form(sensor.to_mm(markers), places, sensor)
     best = min((_refined(s, markers, places, sensor) for s in start), key=lambda r: float(r.cost))
+    free, known = best, []
+    if off_center > 0.0:
+        free = _off_center(best, markers, places, sensor, off_center)
+        known = [_deviation(free.jac, k, _rms(free, markers)) for k in (6, 8, 9)]
+        best = free if (np.abs(free.x[8:]) > CERTAIN * np.array(known[1:])).any() else best
     camera = _camera(best.x, sensor)
-    residuals = best.fun.reshape(-1, 2)
-    rms = math.sqrt(float(np.mean(residuals**2)))
+    rms = _rms(best, markers)
     if rms > LARGEST_RMS or not best.success:
         raise BadInputError(
             f"the calibration did not converge (error per coordinate {rms:.1f} px); are the "
             "markers coplanar, --spacing apart, and seen by a camera that bends lines little?"
         )
-    deviation = _focal_length_deviation(best.jac, rms, camera.focal_length_mm)
+    # Could the focal length be told if the principal point were known?
+    deviation = _deviation(best.jac[: markers.size, :8], 6, rms) / camera.focal_length_mm
     if deviation > LARGEST_DEVIATION:
         raise BadInputError(
             "the pattern is seen too nearly from straight above: there Tsai's method cannot tell "
             "focal length from distance; tilt the camera by 20 degrees or more against it"
         )
+    principal = None
+    if off_center > 0.0:
+        apart = free.x[[6, 8, 9]] - np.append(best.x, (0.0, 0.0))[[6, 8, 9]]
+        f, *xy = np.hypot(known, apart).tolist()
+        deviation, principal = f / camera.focal_length_mm, (xy[0], xy[1])
+        camera = replace(camera, sensor=replace(sensor, principal_px=camera.sensor.center_px))
+    residuals = best.fun[: markers.size].reshape(-1, 2)
     on_table = camera.back_project(markers) - places
     rms_in = math.sqrt(float(np.mean(on_table**2)))
-    return Calibration(camera, markers, places, residuals, rms, rms_in, deviation)
+    return Calibration(camera, markers, places, residuals, rms, rms_in, deviation, principal)
+
+
+def _rms(found: Any, markers: Array) -> float:
+    """Return the root mean square of what is left at the markers, per coordinate (px)."""
+    return math.sqrt(float(np.mean(found.fun[: markers.size] ** 2)))
 
 
 def _closed_form(seen: Array, places: Array, sensor: ImageSensor) -> list[Array]:
@@ -175,20 +212,49 @@ def _completed(r1: float, r2: float, r4: float, r5: float, sign: float) -> Array
     return nearest
 
 
-def _refined(start: Array, markers: Array, places: Array, sensor: ImageSensor) -> Any:
-    """Return the least squares solution that `start` leads to."""
+def _refined(
+    start: Array, markers: Array, places: Array, sensor: ImageSensor, pull: float = 0.0
+) -> Any:
+    """Return the least squares solution that `start` leads to.
+
+    Args:
+        start: eight parameters, or ten with the principal point; see `_camera`.
+        markers, places, sensor: as in `calibrate`.
+        pull: error (px) for each pixel that the principal point is from the middle.
+    """
     points = np.column_stack([places, np.zeros(len(places))])
 
     def left(parameters: Array) -> Array:
-        """Return seen minus projected (2 n), px."""
+        """Return seen minus projected (2 n), px, and the pull on the principal point."""
         residuals = markers - _camera(parameters, sensor).project(points)
-        return np.nan_to_num(residuals, nan=OUTSIDE).ravel()
+        return np.append(np.nan_to_num(residuals, nan=OUTSIDE).ravel(), pull * parameters[8:])
 
     return least_squares(left, start, method="lm", x_scale="jac", max_nfev=2000)
 
 
+def _off_center(
+    best: Any, markers: Array, places: Array, sensor: ImageSensor, off_center: float
+) -> Any:
+    """Return the solution with the principal point, from that in which it is the middle.
+
+    Being off the middle by `off_center` weighs as much as one marker that is off by the noise.
+    """
+    start = np.append(best.x, (0.0, 0.0))
+    for _ in range(ROUNDS):
+        noise = max(_rms(best, markers), LEAST_ERROR)
+        best = _refined(start, markers, places, sensor, noise / off_center)
+        start = best.x
+    return best
+
+
 def _camera(parameters: Array, sensor: ImageSensor) -> Camera:
-    """Return the camera of eight parameters: rotation vector, translation, f, kappa_1."""
+    """Return the camera of parameters: rotation vector, translation, f, kappa_1.
+
+    Two more, if there are any, say how far the principal point is from the middle (px).
+    """
+    if len(parameters) > 8:
+        x, y = (np.array(sensor.center_px) + parameters[8:]).tolist()
+        sensor = replace(sensor, principal_px=(x, y))
     return Camera(
         sensor,
         float(parameters[6]),
@@ -198,16 +264,16 @@ def _camera(parameters: Array, sensor: ImageSensor) -> Camera:
     )
 
 
-def _focal_length_deviation(jacobian: Array, rms: float, focal_length: float) -> float:
-    """Return the standard deviation of f as a share of it, infinite when it is undetermined."""
+def _deviation(jacobian: Array, parameter: int, rms: float) -> float:
+    """Return the standard deviation of a parameter, infinite when it is undetermined."""
     scale = np.linalg.norm(jacobian, axis=0)
     if not (scale > 0.0).all():
         return math.inf
     _, singular, v = np.linalg.svd(jacobian / scale, full_matrices=False)
     if singular[-1] < 1e-9 * singular[0]:
         return math.inf
-    variance = float(np.sum((v[:, 6] / singular) ** 2)) / float(scale[6]) ** 2
-    return max(rms, LEAST_ERROR) * math.sqrt(variance) / focal_length
+    variance = float(np.sum((v[:, parameter] / singular) ** 2)) / float(scale[parameter]) ** 2
+    return max(rms, LEAST_ERROR) * math.sqrt(variance)
 
 
 def _vector(rotation: Array) -> Array:

@@ -26,13 +26,18 @@ NEWTON_STEPS = 8
 class ImageSensor:
     """The image sensor, which fixes what Tsai's method takes as known.
 
-    Pixels are square and the principal point is the centre of the picture. Choice: the paper gives
-    640x480; the width is that of a 1/3-inch chip.
+    Pixels are square. Choice: the paper gives 640x480; the width is that of a 1/3-inch chip.
+
+    Args:
+        width_px, height_px: of the picture.
+        width_mm: of the picture on the sensor.
+        principal_px: where the optical axis meets the sensor; None for the middle of the picture.
     """
 
     width_px: int = 640
     height_px: int = 480
     width_mm: float = 4.8
+    principal_px: tuple[float, float] | None = None
 
     @property
     def pitch_mm(self) -> float:
@@ -42,6 +47,8 @@ class ImageSensor:
     @property
     def center_px(self) -> tuple[float, float]:
         """The principal point (px)."""
+        if self.principal_px is not None:
+            return self.principal_px
         return (self.width_px - 1) / 2.0, (self.height_px - 1) / 2.0
 
     @property
@@ -137,11 +144,13 @@ class Camera:
         return met
 
     def as_json(self) -> dict[str, Any]:
-        """Return all parameters as JSON types."""
+        """Return all parameters as JSON types; the principal point if it is not the middle."""
+        principal = self.sensor.principal_px
         return {
             "width_px": self.sensor.width_px,
             "height_px": self.sensor.height_px,
             "sensor_width_mm": self.sensor.width_mm,
+            **({} if principal is None else {"principal_point_px": list(principal)}),
             "focal_length_mm": self.focal_length_mm,
             "distortion_per_mm2": self.distortion_per_mm2,
             "rotation": [list(row) for row in self.rotation],
@@ -167,7 +176,13 @@ class Camera:
         translation = np.array(values["translation_in"], dtype=np.float64)
         if rotation.shape != (3, 3) or translation.shape != (3,):
             raise ValueError("rotation must be 3 by 3, translation_in 3 numbers")
-        numbers = np.array([width_mm, focal_length, kappa, *rotation.ravel(), *translation])
+        principal = None
+        if "principal_point_px" in values:
+            x, y = map(float, values["principal_point_px"])
+            principal = x, y
+        numbers = np.array(
+            [width_mm, focal_length, kappa, *rotation.ravel(), *translation, *(principal or ())]
+        )
         if not (np.isfinite(numbers).all() and np.abs(numbers).max() <= LARGEST):
             raise ValueError(f"all numbers must lie within {LARGEST:g}")
         if min(width_mm, focal_length) < SMALLEST_MM:
@@ -176,7 +191,7 @@ class Camera:
         if not (square and np.linalg.det(rotation) > 0.0):
             raise ValueError("the rows of rotation must be the axes of a camera")
         return cls(
-            ImageSensor(width, height, width_mm),
+            ImageSensor(width, height, width_mm, principal),
             focal_length,
             kappa,
             tuple(map(tuple, rotation.tolist())),

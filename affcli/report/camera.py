@@ -54,9 +54,14 @@ def calibration_tables(
         position: where the camera stands (in, table frame).
         tilt: of its optical axis against straight down (degrees).
     """
+    principal = "the middle of the picture, which is known"
+    if "principal_point_px" in found:
+        at, known = found["principal_point_px"], found["principal_point_deviation_px"]
+        principal = f"{at[0]:.1f}, {at[1]:.1f} px (known to {known[0]:.1f}, {known[1]:.1f} px)"
     facts = {
         "focal length": f"{found['focal_length_mm']:.3f} mm"
         f" (known to {100.0 * found['focal_length_deviation']:.2g} %)",
+        "principal point": principal,
         "radial distortion": f"{found['distortion_per_mm2']:.5f} per mm^2",
         "camera at x, y, z": ", ".join(f"{value:.2f}" for value in position) + " in",
         "tilt": f"{tilt:.1f} degrees from straight down",
