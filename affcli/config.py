@@ -13,7 +13,6 @@ A stored run keeps only what differs from the defaults number 1 (`Settings.diffe
 """
 
 import difflib
-import json
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -89,9 +88,12 @@ class Settings:
 
     def values(self) -> dict[str, Value]:
         """Return every setting by its name, ``section.key``."""
-        known = known_settings()
+        whole = asdict(self)
+        sections = {**whole, **whole["workspace"]}
         return {
-            name: known[name].canonical(value) for name, value in _flat(_sections(self)).items()
+            name: one.canonical(sections[section][key])
+            for name, one in known_settings().items()
+            for section, key in [name.split(".")]
         }
 
     def differing(self) -> dict[str, Value]:
@@ -101,13 +103,6 @@ class Settings:
         a run names its sensor by itself.
         """
         return {name: value for name, value in _unusual(self).items() if name != SENSOR}
-
-    def to_json(self) -> str:
-        """Return all settings as canonical JSON: what revisions 0001 to 0003 of the schema store.
-
-        For these alone; `differing` is the form that stays the same in the next version.
-        """
-        return json.dumps(_sections(self), sort_keys=True, separators=(",", ":"))
 
 
 SECTIONS: dict[str, type[Any]] = {
@@ -163,24 +158,6 @@ def require_known(settings: Settings) -> None:
             f"this version of affcli cannot run with {_in_words(dict(settings.unknown))}; "
             "install the affcli that wrote it"
         )
-
-
-def settings_from_json(text: str) -> Settings:
-    """Return the settings that `Settings.to_json` wrote: for revisions 0001 to 0003 alone.
-
-    What the text lacks has its default of number 1; the rest is as in `settings_from`.
-
-    Raises:
-        BadInputError: the text is none that `Settings.to_json` writes.
-    """
-    source, remedy = "the stored settings", "restore a copy of the database"
-    try:
-        stored = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise BadInputError(f"{source}: {one_line(error)}; {remedy}") from error
-    if not isinstance(stored, dict) or not all(isinstance(own, dict) for own in stored.values()):
-        raise BadInputError(f"{source}: no sections in them; {remedy}")
-    return settings_from(_flat(stored), source)
 
 
 def load_settings(path: Path | None, changes: Sequence[str] = ()) -> Settings:
@@ -284,17 +261,6 @@ def _in_words(values: Mapping[str, Value]) -> str:
         f"{one_line(name)} = {one_line(value) if isinstance(value, str) else format(value, 'g')}"
         for name, value in values.items()
     )
-
-
-def _sections(settings: Settings) -> dict[str, dict[str, Any]]:
-    """Return the settings as the sections of the TOML file."""
-    whole = asdict(settings)
-    del whole["unknown"]
-    return {**whole.pop("workspace"), **whole}
-
-
-def _flat(sections: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-    return {f"{s}.{key}": value for s, own in sections.items() for key, value in own.items()}
 
 
 def _settings(values: Mapping[str, Value], source: str) -> Settings:

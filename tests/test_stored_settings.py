@@ -21,37 +21,18 @@ from affcli.config import (
     load_settings,
     require_known,
     settings_from,
-    settings_from_json,
     settings_with,
 )
 from affcli.config import DEFAULTS as DEFAULTS_NUMBER
 from affcli.core.setting import Value, setting, settings_of
 from affcli.core.workspace import MotionTiming
-from affcli.errors import BadInputError, DatabaseError
+from affcli.errors import DatabaseError
 from affcli.perception.noisy_sensor import SensorSettings
 from affcli.procedures.extension_of_reach import TrialLimits
-from tests.test_config import DEFAULTS, overrides
+from tests.test_config import overrides
 
 ADDED = {"motion.regrasp_time"}
 """Settings that came after the first version."""
-
-
-def test_revisions_0001_to_0003_are_read_also_where_they_lack_sections_or_hold_more() -> None:
-    """The first had no camera."""
-    older = {name: own for name, own in DEFAULTS.items() if name != "camera"}
-    older["motion"] = {"push_speed": 4.0}
-    older["wings"] = {"span": 3.0}
-    settings = settings_from_json(json.dumps(older))
-    assert settings.camera == Settings().camera
-    assert settings.differing() == {"motion.push_speed": 4.0, "wings.span": 3.0}
-
-
-@pytest.mark.parametrize(
-    "text", ["[]", "{", '{"arm":1}', '{"arm":{"upper_arm":[1]}}', "[" * 10_000]
-)
-def test_stored_settings_that_are_none_are_damage(text: str) -> None:
-    with pytest.raises(BadInputError, match="restore a copy of the database"):
-        settings_from_json(text)
 
 
 def compact(mapping: Mapping[str, Value]) -> str:

@@ -68,13 +68,6 @@ class ConvexPolygon:
         """Signed area by the shoelace formula (in^2); positive when counter-clockwise."""
         return 0.5 * sum(a.x * b.y - b.x * a.y for a, b in self.edges)
 
-    def box_distance(self, point: Point) -> float:
-        """Return the distance from `point` to the bounding box (in); never more than `distance`."""
-        left, bottom, right, top = self.bounds
-        dx = max(left - point.x, 0.0, point.x - right)
-        dy = max(bottom - point.y, 0.0, point.y - top)
-        return math.hypot(dx, dy)
-
     def moved(self, dx: float, dy: float) -> "ConvexPolygon":
         """Return this polygon translated by (dx, dy) (in)."""
         return ConvexPolygon(tuple(Point(x + dx, y + dy) for x, y in self.vertices))

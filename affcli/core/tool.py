@@ -91,10 +91,6 @@ class Tool:
         )
         return replace(self, parts=parts)
 
-    def part_nearest(self, point: Point) -> ToolPart:
-        """Return the part nearest to `point` (in, frame of the parts); of equal ones the first."""
-        return min(self.parts, key=lambda part: part.outline.distance(point))
-
     def parts_missing_in(self, other: "Tool") -> tuple[ToolPart, ...]:
         """Return the parts this tool has and `other` lacks, by name."""
         kept = {part.name for part in other.parts}

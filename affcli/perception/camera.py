@@ -51,11 +51,6 @@ class ImageSensor:
             return self.principal_px
         return (self.width_px - 1) / 2.0, (self.height_px - 1) / 2.0
 
-    @property
-    def corner_mm(self) -> float:
-        """How far a corner of the picture is from the principal point (mm)."""
-        return self.pitch_mm * math.hypot(self.width_px, self.height_px) / 2.0
-
     def to_mm(self, pixels: Array) -> Array:
         """Return positions on the sensor (n, 2), mm, of pixels (n, 2)."""
         centered: Array = (pixels - np.array(self.center_px)) * self.pitch_mm

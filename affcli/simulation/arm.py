@@ -49,24 +49,6 @@ class Reach:
         return self.inner <= radius <= self.outer and bearing <= self.waist_max
 
 
-def wrist_position(arm: ArmGeometry, joints: JointAngles) -> tuple[float, float, float]:
-    """Forward kinematics: return the flange position (x, y, z) (in, table frame)."""
-    forearm = joints.shoulder - joints.elbow
-    hand = forearm - joints.pitch
-    radius = (
-        arm.upper_arm * math.cos(joints.shoulder)
-        + arm.forearm * math.cos(forearm)
-        + arm.wrist_to_flange * math.cos(hand)
-    )
-    z = (
-        arm.shoulder_height
-        + arm.upper_arm * math.sin(joints.shoulder)
-        + arm.forearm * math.sin(forearm)
-        + arm.wrist_to_flange * math.sin(hand)
-    )
-    return -radius * math.sin(joints.waist), radius * math.cos(joints.waist), z
-
-
 def joint_angles(arm: ArmGeometry, wrist: Point, height: float) -> JointAngles | None:
     """Inverse kinematics, elbow up, the hand straight down.
 

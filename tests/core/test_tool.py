@@ -9,10 +9,12 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
+from affcli.analysis.regions import region_at
 from affcli.core.geometry import ConvexPolygon, Point, Pose
 from affcli.core.tool import (
     Hold,
     Tool,
+    hold_of,
     middle_x,
     placed_parts,
     tool_from_canonical,
@@ -21,6 +23,7 @@ from affcli.core.tool import (
 )
 from affcli.core.workspace import ToolGeometry
 from affcli.simulation.tools.paper import paper_tools
+from tests.factories import BINDING
 
 GEOMETRY = ToolGeometry()
 PAPER_HOLD = Hold(GEOMETRY.handle_below_grasp)
@@ -88,15 +91,15 @@ def test_parts_lie_on_the_table_where_the_wrist_s_pose_puts_them(tool: Tool, wri
 
 
 @given(tools, st.floats(-10.0, 10.0), st.floats(-5.0, 20.0))
-def test_the_nearest_part_is_the_one_that_no_other_is_nearer_than(
+def test_the_region_is_the_part_that_no_other_is_nearer_than(
     tool: Tool, x: float, y: float
 ) -> None:
-    nearest = tool.part_nearest(Point(x, y))
+    region = region_at(tool, BINDING, 0.0, Point(x, y))
     distances = {
         part.name: shapely.Polygon(part.outline.vertices).distance(shapely.Point(x, y))
-        for part in tool.parts
+        for part in tool.held(hold_of(BINDING)).parts
     }
-    assert distances[nearest.name] == pytest.approx(min(distances.values()), abs=1e-9)
+    assert distances[region] == pytest.approx(min(distances.values()), abs=1e-9)
 
 
 def test_a_tool_of_which_only_the_name_is_known_has_no_parts() -> None:

@@ -14,7 +14,10 @@ from affcli.core.observation import SENSOR_KINDS
 from tests.fuzz.conftest import Fuzz
 from tests.fuzz.running import Program, check_ending, is_sound
 
-DEFAULTS: dict[str, dict[str, Any]] = json.loads(Settings().to_json())
+DEFAULTS: dict[str, dict[str, Any]] = {}
+for _name, _value in Settings().values().items():
+    _section, _key = _name.split(".")
+    DEFAULTS.setdefault(_section, {})[_key] = _value
 KEYS = [(section, key) for section, values in DEFAULTS.items() for key in values]
 
 NUMBERS = (

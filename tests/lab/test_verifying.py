@@ -5,6 +5,7 @@ from itertools import islice
 
 import pytest
 
+from affcli.analysis.regions import region_of
 from affcli.analysis.verification import JudgedTry
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import AffordanceTable
@@ -86,7 +87,7 @@ def test_rows_of_lost_parts_fail_and_those_of_kept_parts_replicate() -> None:
     left: list[bool] = []
     right: list[bool] = []
     for record in simulated("t-hook", "l-hook"):
-        part = whole.part_nearest(record.row.start.wrist_to_object).name
+        part = region_of(whole, record.row)
         if part != "handle":
             (left if part.startswith("left") else right).append(record.replicated)
     assert len(left) > 10

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from affcli.core.geometry import Point
 from affcli.perception.camera import Camera, distorted
 from affcli.perception.camera_settings import CameraSettings
-from tests.perception.views import SENSOR, camera_at, cameras, flat, on_table
+from tests.perception.views import CORNER_MM, SENSOR, camera_at, cameras, flat, on_table
 
 heights = st.floats(0.0, 2.0)
 
@@ -47,8 +47,8 @@ def test_every_pixel_that_shows_the_table_shows_the_point_it_is_taken_back_to(
 @given(st.floats(-0.15, 0.15), st.floats(0.0, 1.0))
 def test_distortion_is_the_inverse_of_tsais_formula(share: float, radius: float) -> None:
     """Tsai: the ideal position is the distorted one times 1 + kappa r^2."""
-    kappa = share / SENSOR.corner_mm**2
-    r = radius * SENSOR.corner_mm
+    kappa = share / CORNER_MM**2
+    r = radius * CORNER_MM
     ideal = np.array([[r * (1.0 + kappa * r * r), 0.0]])
     assert distorted(ideal, kappa)[0, 0] == pytest.approx(r, abs=1e-9)
 

@@ -21,6 +21,8 @@ WORKSPACE = Workspace()
 COLORS = {str(name): color for name, color in TOOL_COLORS.items()}
 """The colour of each tool by its name."""
 SENSOR = ImageSensor()
+CORNER_MM = SENSOR.pitch_mm * math.hypot(SENSOR.width_px, SENSOR.height_px) / 2.0
+"""How far a corner of the picture is from the principal point."""
 PATTERN = Pattern(origin=Point(-12.5, 9.2))
 """As it lies on the table at power-up, but for the side from which the camera looks."""
 SQUARE = ((-12.5, 9.2), (12.5, 34.2))
@@ -50,7 +52,7 @@ def camera_at(
     rotation = looking(math.radians(tilt_degrees), math.radians(turn_degrees))
     distance = height / math.cos(math.radians(tilt_degrees))
     center = np.array([*aim, 0.0]) - distance * rotation[2]
-    kappa = corner_distortion / SENSOR.corner_mm**2
+    kappa = corner_distortion / CORNER_MM**2
     translation = tuple((-rotation @ center).tolist())
     return Camera(SENSOR, focal_length_mm, kappa, rows_of(rotation), translation)
 

@@ -15,7 +15,6 @@ from affcli.simulation.arm import (
     JointAngles,
     joint_angles,
     reach_at,
-    wrist_position,
 )
 from affcli.simulation.tasks.extension_of_reach import start_positions
 from tests.physics.pushes import RADIUS, WORKSPACE
@@ -28,6 +27,24 @@ EDGE = 1e-9
 
 heights = st.one_of(st.sampled_from((LOW, HIGH)), st.floats(0.0, 8.0))
 wrists = st.builds(Point, st.floats(-25.0, 25.0), st.floats(-25.0, 25.0))
+
+
+def wrist_position(arm: ArmGeometry, joints: JointAngles) -> tuple[float, float, float]:
+    """Forward kinematics: return the flange position (x, y, z) (in, table frame)."""
+    forearm = joints.shoulder - joints.elbow
+    hand = forearm - joints.pitch
+    radius = (
+        arm.upper_arm * math.cos(joints.shoulder)
+        + arm.forearm * math.cos(forearm)
+        + arm.wrist_to_flange * math.cos(hand)
+    )
+    z = (
+        arm.shoulder_height
+        + arm.upper_arm * math.sin(joints.shoulder)
+        + arm.forearm * math.sin(forearm)
+        + arm.wrist_to_flange * math.sin(hand)
+    )
+    return -radius * math.sin(joints.waist), radius * math.cos(joints.waist), z
 
 
 @st.composite
