@@ -127,7 +127,7 @@ def test_all_trials_are_what_their_record_says(used: Path) -> None:
     says = "40 of 40 trials equal their record in every step\n"
     assert done("replay", "--all", "--db", used) == Ended(0, "", says)
     ended = done("replay", "--all", "--json", "--db", used)
-    assert ended.json == {"trials": 40, "equal": 40, "differing": {}}
+    assert ended.json == {"trials": 40, "equal": 40, "differing": {}, "not_replayed": {}}
     assert ended.err == says
 
 
