@@ -32,7 +32,7 @@ from affcli.cli.terminal import (
     shows_braille,
 )
 from affcli.core.replay import Difference, Replay, ReplayedBehavior
-from affcli.errors import BadInputError, UsageError, one_line
+from affcli.errors import AffcliError, BadInputError, UsageError, one_line
 from affcli.lab.drawing import require_figures
 from affcli.lab.filming import FRAME_RATE
 from affcli.report.replaying import (
@@ -237,18 +237,25 @@ def _replay_all(store: "Store", *, as_json: bool) -> int:
     if not trials:
         raise UsageError("no trials yet; first run: affcli solve --goal 1")
     differing: dict[int, str] = {}
+    not_replayed: dict[int, str] = {}
     with progress("replaying", len(trials)) as bar:
         for number, trial in enumerate(trials, 1):
-            again = lab.replaying.replay_trial(store, trial.id)
-            if again.differences:
-                differing[trial.id] = verdict(len(again.steps), again.differences)
+            try:
+                again = lab.replaying.replay_trial(store, trial.id)
+            except AffcliError as error:  # it names what is not here, or is damaged: others are not
+                not_replayed[trial.id] = str(error)
+            else:
+                if again.differences:
+                    differing[trial.id] = verdict(len(again.steps), again.differences)
             bar.update(number, f"{number} of {len(trials)} trials")
-    equal = len(trials) - len(differing)
+    otherwise = differing | not_replayed
+    equal = len(trials) - len(otherwise)
     if as_json:
-        show_json({"trials": len(trials), "equal": equal, "differing": differing})
-    for trial_id, words in list(differing.items())[:MOST_SAID]:
-        say(f"trial {trial_id}: {words}")
-    if len(differing) > MOST_SAID:
-        say(f"and {len(differing) - MOST_SAID} more; --json names them all")
+        found = {"trials": len(trials), "equal": equal, "differing": differing}
+        show_json({**found, "not_replayed": not_replayed})
+    for trial_id in sorted(otherwise)[:MOST_SAID]:
+        say(f"trial {trial_id}: {otherwise[trial_id]}")
+    if len(otherwise) > MOST_SAID:
+        say(f"and {len(otherwise) - MOST_SAID} more; --json names them all")
     say(f"{equal} of {len(trials)} trials equal their record in every step")
-    return 1 if differing else 0
+    return 1 if otherwise else 0

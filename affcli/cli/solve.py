@@ -19,6 +19,7 @@ from affcli.cli.options import (
     TrialSensor,
 )
 from affcli.cli.terminal import now, show, show_either
+from affcli.core.task import ALL_STARTS
 from affcli.core.trial import StepRecord
 from affcli.report.trials import explain_trial, solve_table, trial_json
 
@@ -33,9 +34,9 @@ def solve(
         typer.Option("--tool", help="One tool; all learned ones if not given.", metavar="NAME"),
     ] = None,
     run: Run = None,
-    start: Annotated[str, typer.Option("--start", help="Its name, or all.", metavar="NAME")] = (
-        "all"
-    ),
+    start: Annotated[
+        str, typer.Option("--start", help="Its name, or all.", metavar="NAME")
+    ] = ALL_STARTS,
     task: TaskSet = DEFAULT_TASKS,
     planner: Planner = DEFAULT_PLANNER,  # type: ignore[assignment]  # parsed like any other
     seed: Seed = 0,
@@ -51,7 +52,7 @@ def solve(
     Every step updates the counters of the row it used in the stored table. Exit code 1 only when a
     single start was asked for and not solved.
     """
-    wanted = lab.solving.WantedTasks(task, goal, None if start == "all" else start)
+    wanted = lab.solving.WantedTasks(task, goal, start)
     trials: list[lab.solving.SolvedTrial] = []
     steps: list[list[tuple[int, StepRecord]]] = [[]]
     with opened(database, write=True) as store:
@@ -76,4 +77,4 @@ def solve(
     )
     numbers = [one.id for one in trials]
     say_trials(numbers, numbers[-1], database)
-    return 0 if start == "all" or all(one.solved for one in trials) else 1
+    return 0 if start == ALL_STARTS or all(one.solved for one in trials) else 1

@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 from affcli.core.geometry import ConvexPolygon, Point
 from affcli.core.observation import Observation
 
+ALL_STARTS = "all"
+"""Asks for a task from each start; no start has this name."""
+
 
 @dataclass(frozen=True, slots=True)
 class GoalRegion:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any, NamedTuple, NewType
 
-from affcli.core.behavior import GRASP, BehaviorCall
+from affcli.core.behavior import BehaviorCall
 from affcli.core.geometry import ConvexPolygon, Point, Pose
 from affcli.core.identity import key_of
 from affcli.errors import BadInputError, one_line
@@ -111,11 +111,11 @@ class Tool:
 
 
 def hold_of(binding: BehaviorCall) -> Hold:
-    """Return how a grasp holds the tool; BadInputError for a binding of another name."""
-    if binding.name != GRASP:
+    """Return how a grasp holds the tool; BadInputError for a binding that names no grasp point."""
+    if "grasp_point" not in dict(binding.params):
         raise BadInputError(
-            f"{one_line(binding, 60)}: this affcli does not know how that holds a tool; install "
-            "the affcli that made the record"
+            f"{one_line(binding, 80)}: this affcli does not know where that binding holds the "
+            "tool; install what made the record"
         )
     return Hold(binding["grasp_point"], math.radians(binding.get("angle", 0.0)))
 

@@ -9,7 +9,7 @@ from affcli.core.names import one_of
 from affcli.core.observation import SensorKind
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import Counters, Protocol, SessionSpec, TrialSpec
-from affcli.core.task import Task
+from affcli.core.task import ALL_STARTS, Task
 from affcli.core.trial import Outcome, StepRecord, TrialEnd
 from affcli.core.world import World
 from affcli.lab.run_parts import tasks_of, world_of
@@ -25,22 +25,21 @@ class WantedTasks:
     Args:
         task_set: of this set.
         goal: those with the goal of this name.
-        start: those from the start of this name; from all for None.
+        start: those from the start of this name; from all for `ALL_STARTS`.
     """
 
     task_set: str
     goal: str
-    start: str | None = None
+    start: str = ALL_STARTS
 
     def among(self, world: World) -> list[Task]:
         """Return the tasks of a world that are meant; UsageError when there are none."""
         known = tasks_of(world, self.task_set)
         goal = one_of("goal", self.goal, dict.fromkeys(task.goal.name for task in known))
         tasks = [task for task in known if task.goal.name == goal]
-        if self.start is None:
-            return tasks
-        start = one_of("start", self.start, [task.start_name for task in tasks])
-        return [task for task in tasks if task.start_name == start]
+        starts = [task.start_name for task in tasks]
+        start = one_of("start", self.start, [*starts, ALL_STARTS])
+        return [task for task in tasks if start in (task.start_name, ALL_STARTS)]
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from rich.console import Console, ConsoleOptions, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from affcli.analysis.paper import PLANNER
 from affcli.core.geometry import Point
 from affcli.core.replay import Difference, Replay, ReplayedBehavior, ReplayedStep
 from affcli.core.scene import Scene
@@ -95,7 +96,9 @@ def step_words(replay: Replay, step: ReplayedStep) -> tuple[list[str], list[str]
     """Return why a row was chosen in a step and which were next best; and what came of it."""
     chosen, *others = step.considered
     *why, happened, probability = step_lines(step.step.record, replay.spec.task.goal)
-    why = [f"row {chosen.id}: {call_words(chosen.row.exploratory)}", "", *why]
+    planner = str(replay.spec.planner)
+    by = [] if planner == PLANNER else [f"planner: {planner}"]
+    why = [f"row {chosen.id}: {call_words(chosen.row.exploratory)}", *by, "", *why]
     for other in others[:MOST_CLOSE]:
         why.append(
             f"next best: row {other.id}, {call_words(other.row.exploratory)}: "
@@ -225,6 +228,7 @@ def replay_json(replay: Replay, numbers: Sequence[int]) -> dict[str, Any]:
         "shape": spec.shape,
         "goal": spec.goal,
         "start": spec.start,
+        "planner": str(spec.planner),
         "goal_center": list(spec.task.goal.center),
         "outcome": None if replay.end is None else replay.end.outcome.value,
         "steps": [_step_json(replay.steps[number - 1]) for number in numbers],

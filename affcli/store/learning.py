@@ -181,10 +181,14 @@ class Learning:
         Returns:
             The table; and the id of each row in the store by its learning step.
         """
+        learned = self.run(run_id).spec
         found = self.database.mappings(sa.select(affordance).filter_by(learning_run_id=run_id))
         fresh = dict.fromkeys(COUNTERS, 1) if as_learned else {}
-        with reading.reading_what_was_written(f"the affordance table of run {run_id}"):
-            table = AffordanceTable(reading.affordance({**row, **fresh}) for row in found)
+        place, counted = (
+            f"the affordance table of run {run_id}",
+            ({**row, **fresh} for row in found),
+        )
+        table = reading.affordance_table(place, counted, learned)
         return table, {row["step"]: row["id"] for row in found}
 
     def row(self, row_id: int) -> StoredRow:

@@ -1,12 +1,13 @@
 """From rows to records. A value is checked once, here, where it is read."""
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import lru_cache
 from typing import Any, cast
 
 from affcli.core.affordance import Affordance
+from affcli.core.affordance_table import AffordanceTable
 from affcli.core.behavior import BehaviorCall, BehaviorName, Repertoire, repertoire_from_json
 from affcli.core.choice import Reason, Reasons
 from affcli.core.geometry import Point, Pose
@@ -114,6 +115,27 @@ def affordance(row: Columns) -> Affordance:
     )
 
 
+def affordance_table(place: str, rows: Iterable[Columns], learned: LearningSpec) -> AffordanceTable:
+    """Return an affordance table from its rows, which have the behaviors of their run: a robot that
+    has learned them can try them.
+
+    Args:
+        place: which table, for the message.
+        rows: with the counters that it is to have.
+        learned: what its run is a function of.
+
+    Raises:
+        DatabaseError: a value, or a row, that its run cannot have made.
+    """
+    tried = {one.call for one in learned.repertoire}
+    with reading_what_was_written(place):
+        table = [affordance(row) for row in rows]
+        for row in table:
+            if row.exploratory not in tried or row.binding.name != learned.binding.name:
+                raise ValueError(f"row {row.step}: {row.binding}, {row.exploratory}")
+        return AffordanceTable(table)
+
+
 def stored_row(row: Columns) -> StoredRow:
     """Return a row of an affordance table."""
     with reading_what_was_written(f"affordance {row['id']}"):
@@ -175,8 +197,13 @@ def session(row: Columns) -> SessionInfo:
         return SessionInfo(spec=spec, versions=versions, **{name: row[name] for name in names})
 
 
-def trial(row: Columns, learned: LearningSpec) -> TrialInfo:
-    """Return a trial; `row` has its session's kind and versions, and the shape's definition."""
+def trial(row: Columns, learned: Mapping[int, LearningSpec]) -> TrialInfo:
+    """Return a trial; `row` has its session's kind and versions, and the shape's definition.
+
+    Args:
+        row: its columns.
+        learned: what learning runs are functions of, by number; its own among them.
+    """
     with reading_what_was_written(f"trial {row['id']}"):
         goal = GoalRegion(row["goal"], point(row, "goal"), row["goal_half_width"])
         spec = TrialSpec(
@@ -198,7 +225,7 @@ def trial(row: Columns, learned: LearningSpec) -> TrialInfo:
             session_kind=row["kind"],
             run_id=row["learning_run_id"],
             spec=spec,
-            learned=learned,
+            learned=learned[row["learning_run_id"]],
             versions=dict(json.loads(row["versions"])),
             outcome=None if row["outcome"] is None else Outcome(row["outcome"]),
             steps=row["steps"],

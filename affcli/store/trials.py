@@ -224,12 +224,15 @@ class Trials:
             wanted = sa.select(affordance).where(affordance.c.learning_run_id == run)
             learned = mappings(connection, wanted)
             used = {row_id: (tries, good) for row_id, tries, good in connection.execute(sums)}
-        with reading.reading_what_was_written(f"the affordance table before trial {trial_id}"):
-            counted = [(row, *used.get(row["id"], (0, 0))) for row in learned]
-            table = AffordanceTable(
-                reading.affordance({**row, "times_used": 1 + tries, "times_successful": 1 + good})
-                for row, tries, good in counted
-            )
+        uses_of = ((row, *used.get(row["id"], (0, 0))) for row in learned)
+        table = reading.affordance_table(
+            f"the affordance table before trial {trial_id}",
+            (
+                {**row, "times_used": 1 + n, "times_successful": 1 + good}
+                for row, n, good in uses_of
+            ),
+            self.trial(trial_id).learned,
+        )
         return table, {row["step"]: row["id"] for row in learned}
 
     def excluded_before(
@@ -326,4 +329,4 @@ def _infos(connection: sa.Connection, *conditions: sa.ColumnElement[bool]) -> tu
     )
     found = mappings(connection, wanted)
     learned = {row["id"]: reading.learning_run(row).spec for row in runs}
-    return tuple(reading.trial(row, learned[row["learning_run_id"]]) for row in found)
+    return tuple(reading.trial(row, learned) for row in found)

@@ -1,26 +1,29 @@
-"""The real program as a process: run it, read it, and look into its database."""
+"""The program, within this process or as one of its own: run it, read it, see what it wrote."""
 
-import atexit
+import io
 import json
 import os
-import select
 import signal
 import sqlite3
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager, suppress
+from contextlib import ExitStack, chdir, closing, contextmanager, suppress
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
+
+from affcli.cli.main import main
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = (sys.executable, "-m", "affcli")
 PATIENCE = 120.0
 """Seconds after which a command is taken to hang. No test is about speed."""
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)
+"""What the program handles while it runs."""
 
 CLOCKS = {"started_at", "finished_at"}
 """Columns that say when something happened; all others follow from seeds and settings."""
@@ -53,71 +56,32 @@ def environment(**changes: str) -> dict[str, str]:
     return {k: v for k, v in os.environ.items() if k not in ours} | changes
 
 
-class Warm:
-    """The program, imported and waiting to be forked (see ``warm.py``)."""
-
-    def __init__(self) -> None:
-        self.folder = tempfile.TemporaryDirectory()
-        self.process = subprocess.Popen(
-            [sys.executable, "-m", "tests.cli.warm"],
-            cwd=ROOT,
-            env=environment(OPENBLAS_NUM_THREADS="1"),
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            start_new_session=True,
-        )
-
-    def run(self, args: list[str], cwd: Path, env: dict[str, str], copies: int = 1) -> list[Ended]:
-        """Run a command, or several copies of it side by side, to its end."""
-        out, err = (f"{self.folder.name}/{name}" for name in ("out", "err"))
-        request = {"args": args, "cwd": str(cwd), "env": env, "copies": copies}
-        request |= {"out": out, "err": err}
-        asked, told = self.process.stdin, self.process.stdout
-        assert asked is not None
-        assert told is not None
-        asked.write(json.dumps(request).encode() + b"\n")
-        asked.flush()
-        ready, _, _ = select.select([told], [], [], PATIENCE)
-        if not ready:
-            self.stop()
-        assert ready, f"{args} hangs"
-        codes = json.loads(told.readline())
-        return [
-            Ended(code, Path(f"{out}{copy}").read_text(), Path(f"{err}{copy}").read_text())
-            for copy, code in enumerate(codes)
-        ]
-
-    def stop(self) -> None:
-        """End it, and a command that hangs with it."""
-        if self.process.poll() is None:
-            os.killpg(self.process.pid, signal.SIGKILL)
-        self.process.communicate()
-        self.folder.cleanup()
-        warm.cache_clear()
-
-
-@cache
-def warm() -> Warm:
-    """Return the program, imported once for all tests."""
-    started = Warm()
-    atexit.register(started.stop)
-    return started
-
-
 def affcli(*args: Arg, cwd: Path | None = None, **env: str) -> Ended:
-    """Run the program to its end; whatever happens it must not show a traceback."""
-    (ended,) = side_by_side(1, *args, cwd=cwd, **env)
-    return ended
+    """Run a command to its end within this process; only an error of affcli's own may leave it.
 
-
-def side_by_side(copies: int, *args: Arg, cwd: Path | None = None, **env: str) -> list[Ended]:
-    """Run copies of the same command at once, each to its end."""
+    Its streams are as in a shell; what a shell does besides, `executed` and `started` are for.
+    """
     # As Python reads a command line: what is no character becomes a lone surrogate.
-    as_text = [os.fsdecode(arg) for arg in args]
-    ended = warm().run(as_text, cwd or Path.cwd(), environment(**env), copies)
-    for one in ended:
-        assert "Traceback" not in one.err, one.err
-    return ended
+    words = ["affcli", *map(os.fsdecode, args)]
+    out, err = io.BytesIO(), io.BytesIO()
+    hook, handlers = sys.unraisablehook, {one: signal.getsignal(one) for one in SIGNALS}
+    with (
+        Path(os.devnull).open(encoding="utf-8") as nothing,
+        io.TextIOWrapper(out, "utf-8") as stdout,
+        io.TextIOWrapper(err, "utf-8") as stderr,
+        chdir(cwd or Path.cwd()),
+        patch.dict(os.environ, environment(**env), clear=True),
+        patch.multiple(sys, argv=words, stdin=nothing, stdout=stdout, stderr=stderr),
+    ):
+        try:
+            code = main()
+        finally:
+            sys.unraisablehook = hook
+            for signum, handler in handlers.items():
+                signal.signal(signum, handler)
+        stdout.flush()
+        stderr.flush()
+        return Ended(code, out.getvalue().decode(), err.getvalue().decode())
 
 
 def done(*args: Arg, cwd: Path | None = None, **env: str) -> Ended:
@@ -148,6 +112,13 @@ def executed(*args: Arg, **env: str) -> Ended:
     """Run the program as a shell does, from the start of Python on."""
     with started(*args, **env) as process:
         return ending(process)
+
+
+def side_by_side(copies: int, *args: Arg) -> list[Ended]:
+    """Run copies of the same command at once, each a process, to its end."""
+    with ExitStack() as all_of_them:
+        processes = [all_of_them.enter_context(started(*args)) for _ in range(copies)]
+        return [ending(process) for process in processes]
 
 
 @contextmanager

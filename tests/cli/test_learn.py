@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from affcli.core.tool import TOOL_PARTS
+from affcli.simulation.tools.paper import TOOL_PARTS
 from tests.cli.program import Ended, contents, done, executed, rows, side_by_side
 
 SHORT = ("learn", "--tool", "stick", "--behaviors", "60")

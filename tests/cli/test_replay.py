@@ -12,14 +12,14 @@ from typing import Any
 import pytest
 from rich.cells import cell_len
 
-from affcli.core.trial import LearningSpec
 from affcli.lab.learning_run import LearningRun
-from affcli.lab.solving import solve
+from affcli.lab.solving import WantedTasks, solve
 from affcli.store import open_store
 from tests.cli.program import Ended, affcli, done, refused, rows, started, wait_until
 from tests.cli.test_interrupt import handles_signals, stopped
+from tests.factories import learning_spec
+from tests.lab.quick import NOW, PLANNER, now
 
-NOW = "2026-01-02T03:04:05+00:00"
 SOLVED = "5"
 """The T-hook brings the attractor over goal 2 from start 1."""
 NEXT = "; q: leave > "
@@ -127,7 +127,7 @@ def test_all_trials_are_what_their_record_says(used: Path) -> None:
     says = "40 of 40 trials equal their record in every step\n"
     assert done("replay", "--all", "--db", used) == Ended(0, "", says)
     ended = done("replay", "--all", "--json", "--db", used)
-    assert ended.json == {"trials": 40, "equal": 40, "differing": {}}
+    assert ended.json == {"trials": 40, "equal": 40, "differing": {}, "not_replayed": {}}
     assert ended.err == says
 
 
@@ -172,7 +172,8 @@ def test_away_from_a_terminal_nothing_is_wider_than_the_screen(columns: int, use
 def interrupted(database: Path, steps: int) -> int:
     """Begin a trial and stop it after some steps; return its number."""
     with open_store(database, create=False, write=True) as store:
-        trial = solve(store, [store.learning_run(1)], 1, [1], 0, lambda: NOW)
+        wanted = WantedTasks("extension-of-reach", "1", "1")
+        trial = solve(store, [store.learning.run(1)], wanted, 0, now, PLANNER)
         assert len(list(islice(trial, steps))) == steps
     ((number,),) = rows(database, "SELECT max(id) FROM trial")
     return int(number)
@@ -205,17 +206,17 @@ def test_a_trial_without_steps_shows_the_table(learned: Path) -> None:
 
 def test_a_run_that_goes_on_is_done_as_far_as_it_came(learned: Path) -> None:
     """Just begun it has nothing to show; later some."""
-    ((settings,),) = rows(learned, "SELECT settings FROM learning_run WHERE id = 1")
-    run = LearningRun(LearningSpec("l-stick", 3, 0, 1.0, None, settings))
+    run = LearningRun(learning_spec("l-stick", seed=3, hours=1.0))
     with open_store(learned, create=False, write=True) as store:
-        info = store.begin_learning(run.spec, {}, NOW)
+        info = store.learning.begin(run.spec, {}, NOW)
         says = f"run {info.id}: the replay equals the record, no behaviors\n"
         assert done("replay", "--run", str(info.id), "--db", learned) == Ended(0, "", says)
         asked = ("replay", "--run", str(info.id), "--steps", "1", "--db", learned)
         assert f"no behavior 1 in run {info.id}; it has none" in refused(2, *asked)
         some = list(islice(run.steps(), 12))
-        clock = run.bench.robot.clock
-        assert store.append_learning(info.id, 0, some, run.checkpoint(), clock, done=False, now=NOW)
+        clock = run.setting.robot.clock
+        saved = (info.id, 0, some, run.checkpoint(), clock)
+        assert store.learning.append(*saved, done=False, now=NOW)
     says = f"run {info.id}: the replay equals the record, all 12 behaviors\n"
     assert done("replay", "--run", str(info.id), "--db", learned) == Ended(0, "", says)
 

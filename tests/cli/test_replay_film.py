@@ -14,7 +14,8 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
-from affcli.core.tool import TOOL_COLORS, ToolName
+from affcli.core.tool import ToolName
+from affcli.simulation.tools.paper import TOOL_COLORS
 from tests.cli.program import (
     PROGRAM,
     ROOT,

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from affcli.core.tool import TOOL_PARTS
+from affcli.simulation.tools.paper import TOOL_PARTS
 from tests.cli.program import contents, done, ending, rows, started
 
 PAPER = {

@@ -86,7 +86,7 @@ def traced(log: Path, *args: Arg) -> list[str]:
 def test_a_commit_waits_for_file_and_folder(empty: Path) -> None:
     """As SQLite itself says, where no other program can look on: 3 is EXTRA."""
     with open_store(empty, create=False, write=True) as store:
-        assert store._driver.execute("PRAGMA synchronous").fetchone() == (3,)
+        assert store.database.driver.execute("PRAGMA synchronous").fetchone() == (3,)
 
 
 def poor(bytes_: int, *args: Arg) -> Ended:

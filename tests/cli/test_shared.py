@@ -10,7 +10,7 @@ from threading import Event, Thread
 
 import pytest
 
-from affcli.core.tool import TOOL_PARTS
+from affcli.simulation.tools.paper import TOOL_PARTS
 from affcli.store.lock_retry import LONGEST_WAIT as STORE_PATIENCE
 from tests.cli.program import (
     Contents,

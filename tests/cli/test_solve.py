@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from affcli.core.tool import TOOL_PARTS
+from affcli.simulation.tools.paper import TOOL_PARTS
 from tests.cli.program import affcli, contents, done, refused, rows
 
 COUNTERS = "SELECT id, times_used, times_successful FROM affordance ORDER BY id"

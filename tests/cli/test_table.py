@@ -9,7 +9,8 @@ import pytest
 from rich.cells import cell_len
 
 from affcli.core.observation import Observation
-from affcli.core.tool import TOOL_PARTS, ToolName
+from affcli.core.tool import ToolName
+from affcli.simulation.tools.paper import TOOL_PARTS
 from tests.cli.program import affcli, done, names_in, refused, rows
 from tests.cli.table_rows import EVIL, listed, tamper, vary_counters
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from affcli.core.tool import TOOL_PARTS
+from affcli.simulation.tools.paper import TOOL_PARTS
 from tests.cli.program import (
     affcli,
     contents,

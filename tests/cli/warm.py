@@ -1,17 +1,13 @@
-"""The program imported once and forked for every command: ``python -m tests.cli.warm``.
+"""The program imported once and forked for every command, for those who fork it.
 
 Each command is a process of its own, with its own arguments, folder, environment and streams; only
-starting Python, importing and cleaning up, which would take most of the tests' time, is left out.
-What is about these is tested without this.
+starting Python, importing and cleaning up is left out. What is about these is tested without this.
 
-A request is a line of JSON on stdin: args, cwd, env, the files that stdout and stderr go to, and
-how many copies to run side by side. The answer is a line with their exit codes.
+A request has args, cwd, env, and the files that stdout and stderr go to.
 """
 
-import gc
 import importlib
 import io
-import json
 import os
 import pkgutil
 import signal
@@ -84,25 +80,3 @@ def run(request: dict[str, Any]) -> NoReturn:
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(code)
-
-
-def serve() -> None:
-    """Fork for every request, as often as it says."""
-    for line in sys.stdin:
-        request = json.loads(line)
-        children = []
-        for copy in range(request["copies"]):
-            children.append(os.fork())
-            if children[-1] == 0:
-                files = {name: f"{request[name]}{copy}" for name in ("out", "err")}
-                run({**request, **files})
-        codes = [os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) for child in children]
-        sys.stdout.write(json.dumps(codes) + "\n")
-        sys.stdout.flush()
-
-
-if __name__ == "__main__":
-    import_everything()
-    warm_up()
-    gc.freeze()  # the forks leave alone what they share
-    serve()

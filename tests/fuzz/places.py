@@ -5,7 +5,12 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
+from affcli.config import load_settings
+from affcli.lab.learning_run import LearningRun
+from affcli.store import open_store
 from tests.cli.program import done
+from tests.factories import learning_spec
+from tests.lab.quick import NOW
 
 SETTINGS = "[motion]\nhold = 60.0\n[trial]\nmax_steps = 4\n"
 """An hour holds some thirty behaviors, and trials are given up soon."""
@@ -40,27 +45,15 @@ def furnish(folder: Path) -> None:
 
 def interrupt(database: Path) -> None:
     """Leave a learning run and a reproduction in the middle, as a kill does."""
-    from affcli.config import load_settings
-    from affcli.core.trial import LearningSpec
-    from affcli.lab.learning_run import LearningRun
-    from affcli.store import open_store
-    from tests.lab.quick import NOW
-
     settings = load_settings(database.parent / "settings.toml")
-    spec = LearningSpec("l-hook", 7, 0, None, 30, settings.to_json())
-    run = LearningRun(spec)
+    run = LearningRun(learning_spec("l-hook", seed=7, behaviors=30, settings=settings))
     steps = run.steps()
     chunk = [next(steps) for _ in range(20)]
     with open_store(database, create=False, write=True) as store:
-        info = store.begin_learning(spec, {}, NOW)
-        store.append_learning(
-            info.id,
-            0,
-            chunk,
-            run.checkpoint(),
-            robot_seconds=run.bench.robot.clock,
-            done=False,
-            now=NOW,
+        info = store.learning.begin(run.spec, {}, NOW)
+        clock = run.setting.robot.clock
+        store.learning.append(
+            info.id, 0, chunk, run.checkpoint(), robot_seconds=clock, done=False, now=NOW
         )
     with closing(sqlite3.connect(database)) as driver, driver:
         driver.execute(

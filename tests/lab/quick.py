@@ -9,6 +9,7 @@ from affcli.core.identity import Component
 from affcli.core.observation import SensorKind
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import LearningSpec, LearningStep, RowStarts
+from affcli.core.task import ALL_STARTS
 from affcli.lab.learning_run import LearningRun
 from affcli.lab.solving import SolvedStep, SolvedTrial, WantedTasks, solve
 from affcli.store import Store
@@ -72,7 +73,7 @@ def solving(
     store: Store,
     runs: LearningRunInfo | list[LearningRunInfo],
     goal: str = "1",
-    start: str | None = None,
+    start: str = ALL_STARTS,
     *,
     seed: int = 0,
     planner: Component = PLANNER,
