@@ -42,7 +42,7 @@ TOTAL, TRIALS = sum(EXTENSION_OF_REACH.values()), STARTS * len(EXTENSION_OF_REAC
 BROKEN, BROKEN_TRIALS = 16, STARTS * len(GOALS)
 """16 of 16 with the T-hook that had become an L-hook (§7.2)."""
 
-BEHAVIORS = frozenset(
+BEHAVIORS = tuple(
     f"{name} {distance}"
     for name in ("extend arm", "contract arm", "slide arm left", "slide arm right")
     for distance in (2, 5)
@@ -101,8 +101,10 @@ def other_parts(spec: LearningSpec | SessionSpec) -> dict[str, str]:
     """
     parts = {}
     behaviors = [str(one.call) for one in spec.repertoire]
-    if set(behaviors) != BEHAVIORS:
-        parts["behaviors"] = ", ".join(behaviors)
+    more = [f"+ {name}" for name in behaviors if name not in BEHAVIORS]
+    less = [f"- {name}" for name in BEHAVIORS if name not in behaviors]
+    if more or less:
+        parts["behaviors"] = ", ".join(more + less)
     point = json.loads(spec.settings).get("tools.handle_below_grasp", _HANDLE_BELOW_GRASP)
     if (spec.binding.name, spec.binding.params) != (GRASP, (("grasp_point", point),)):
         parts["binding"] = str(spec.binding)

@@ -99,7 +99,7 @@ def _life(
     latest = _latest_runs(store)
     if latest and robot is None and session is None:
         every = [t for run in latest for t in store.trials.trials(run_id=run.id)]
-        trials = _latest(every, [run.spec.tool for run in latest])
+        trials = _latest(every, [run.id for run in latest])
         seeds = sorted({run.spec.seed for run in latest})
         name = f"the robot of seed {', '.join(map(str, seeds))}"
         return _Life(name, latest, trials, len(every) - len(trials))
@@ -133,8 +133,8 @@ def _latest_runs(store: Store) -> list[LearningRunInfo]:
     return [run for run in map(store.learning.latest, tools) if run is not None]
 
 
-def _latest(trials: Iterable[TrialInfo], tools: Sequence[str]) -> list[TrialInfo]:
-    """Return the latest trial of each kind: by tool, goal and start, whole tools first.
+def _latest(trials: Iterable[TrialInfo], runs: Sequence[int]) -> list[TrialInfo]:
+    """Return the latest trial of each kind: by run, goal and start, whole tools first.
 
     Of the trials with a whole tool those of `solve`, which go on with the counters as they are,
     come before those that `break-tool` does beside the broken ones.
@@ -149,7 +149,7 @@ def _latest(trials: Iterable[TrialInfo], tools: Sequence[str]) -> list[TrialInfo
 
     def place(trial: TrialInfo) -> tuple[object, ...]:
         spec = trial.spec
-        which = (tools.index(spec.tool), goals.index(spec.goal), starts.index(spec.start))
+        which = (runs.index(trial.run_id), goals.index(spec.goal), starts.index(spec.start))
         return (spec.shape != spec.tool, *which, trial.id)
 
     return sorted(by_kind.values(), key=place)

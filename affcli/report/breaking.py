@@ -8,7 +8,7 @@ from affcli.analysis.paper import BROKEN, PLANNER, papers_breaking
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import TrialRecord
 from affcli.report.sheet import Sheet
-from affcli.report.words import call_words
+from affcli.report.words import call_words, many
 
 
 def broken_json(run: LearningRunInfo, trials: Sequence[TrialRecord]) -> dict[str, Any]:
@@ -96,7 +96,7 @@ def _excluded_table(dead: Sequence[DeadRow], trials: int) -> Sheet:
         ("behavior", "side", "rows", "truly lost", "times"),
         title=f"Rows excluded with the broken tool: {len(dead)}, {missing} on the missing side",
         caption="side: where the attractor was; truly lost: the broken shape cannot do it; "
-        f"times: over the {trials} trials; --json lists each row",
+        f"times: over {many(trials, 'trial')}; --json lists each row",
         left=("behavior", "side"),
     )
     groups: dict[tuple[str, bool], list[DeadRow]] = {}

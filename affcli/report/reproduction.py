@@ -20,7 +20,7 @@ from affcli.analysis.paper import (
 from affcli.analysis.reproduction import Reproduction, Solved
 from affcli.analysis.statistics import ENOUGH_ROBOTS, Spread
 from affcli.report.sheet import Sheet
-from affcli.report.words import in_order, many, parts_words, run_words, settings_words
+from affcli.report.words import in_order, many, run_words, settings_words
 
 
 def reproduction_json(result: Reproduction) -> dict[str, Any]:
@@ -137,12 +137,14 @@ def _others_table(result: Reproduction) -> Sheet:
     }
     usual = {"became": "", "planner": PLANNER, "tasks": TASK_SET}
     more = {name: cells for name, cells in named.items() if set(cells) != {usual[name]}}
-    parts = parts_words(result.session.spec)
+    tried = {solved.tried for own in result.others.values() for solved in own.values()}
+    alike = f" of {tried.pop() / result.robots:g}" if len(tried) == 1 else ""
+    robots = many(result.robots, "robot")
     columns = ("tool", *more, *(f"goal {goal}" for goal in goals), "all")
     table = Sheet(
         columns,
-        title=f"Not in the paper: mean of {many(result.robots, 'robot')} [central 95 %] of trials",
-        caption="\n".join(filter(None, (parts, _session(result) if not result.cells else ""))),
+        title=f"Not in the paper: solved{alike}, mean of {robots} [central 95 %]",
+        caption="" if result.cells else _session(result),
         left=columns,
     )
     for number, kind in enumerate(kinds):
@@ -151,15 +153,18 @@ def _others_table(result: Reproduction) -> Sheet:
             [sum(counts) for counts in zip(*(s.counts for s in own.values()), strict=True)],
             sum(solved.tried for solved in own.values()),
         )
-        cells = [_of(own[goal], result.robots) if goal in own else "-" for goal in goals]
+        cells = [
+            "-" if goal not in own else _of(own[goal], 0 if alike else result.robots)
+            for goal in goals
+        ]
         named_cells = (values[number] for values in more.values())
         table.add(kind.tool, *named_cells, *cells, _of(everything, result.robots))
     return table
 
 
 def _of(solved: Solved, robots: int) -> str:
-    """Return the mean, the central 95 % of robots, and how many trials a robot had."""
-    return f"{_cell(solved.counts)} of {solved.tried / robots:g}"
+    """Return the mean and the central 95 % of robots, and of how many trials of so many robots."""
+    return _cell(solved.counts) + (f" of {solved.tried / robots:g}" if robots else "")
 
 
 def _cell(counts: Sequence[int]) -> str:

@@ -44,7 +44,7 @@ def explain_trial(spec: TrialSpec, end: TrialEnd, steps: Steps) -> RenderableTyp
         )
         lines += [_indented(4, line) for line in step_lines(step, spec.task.goal)]
     if end.last_reasons is not None:
-        lines.append(_indented(2, f"rows left: {reasons_words(end.last_reasons, chosen=False)}"))
+        lines.append(_indented(2, reasons_words(end.last_reasons, chosen=False)))
     return Group(*lines, "")
 
 
@@ -78,7 +78,7 @@ def step_lines(step: StepRecord, goal: Goal) -> tuple[str, ...]:
     moved = f"expected {movement_words(step.expected)}, seen {movement_words(step.seen)}"
     return (
         f"attractor at ({x:.1f}, {y:.1f}), {now:.1f} in from the goal's centre",
-        f"rows left: {reasons_words(step.reasons)}",
+        reasons_words(step.reasons),
         *regrasped,
         f"re-positioning: {travel:.1f} in; should end {then:.1f} in from the centre",
         f"{moved}: {verdict_words(step)}",

@@ -84,9 +84,12 @@ def reason_words(reason: Reason) -> str:
 
 
 def reasons_words(reasons: Reasons, *, chosen: bool = True) -> str:
-    """Return what a planner went by, and that it chose one row."""
-    words = [reason_words(reason) for reason in reasons]
-    return ", ".join([*words, *(["1 chosen"] if chosen else [])])
+    """Return what a planner went by, and that it chose one row: ``rows left: 24 nearest, 1
+    chosen``.
+    """
+    words = [reason_words(reason) for reason in reasons] + ["1 chosen"] * chosen
+    counted = all(reason.rows is not None for reason in reasons)
+    return f"{'rows left' if counted else 'weighed'}: {', '.join(words)}"
 
 
 def settings_words(settings: str) -> str:

@@ -1,16 +1,21 @@
 """Robots whose hour is short and whose trials end soon, so that whole lives fit into a test."""
 
+import sqlite3
 from collections.abc import Iterable, Iterator
 from functools import cache
+from pathlib import Path
 
 from affcli.config import Settings, settings_with
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.identity import Component
 from affcli.core.observation import SensorKind
 from affcli.core.records import LearningRunInfo
-from affcli.core.specs import LearningSpec, LearningStep, RowStarts
+from affcli.core.specs import LearningSpec, LearningStep, RowStarts, TrialRecord
 from affcli.core.task import ALL_STARTS
+from affcli.lab.breaking import break_tool
 from affcli.lab.learning_run import LearningRun
+from affcli.lab.reproduction import Reproduced, reproduce
+from affcli.lab.run_parts import RunParts, tool_of
 from affcli.lab.solving import SolvedStep, SolvedTrial, WantedTasks, solve
 from affcli.store import Store
 from tests.factories import learning_spec
@@ -23,6 +28,11 @@ LEISURELY = settings_with({"motion": {"hold": 40.0}, "trial": {"max_steps": 4}},
 IMPATIENT = settings_with({"trial": {"max_steps": 6}}, "a test")
 """Trials are given up soon."""
 PLANNER = Component("nested-query")
+INTERRUPTED = (
+    "DELETE FROM step WHERE number > 2",
+    "UPDATE trial SET outcome = NULL, steps = NULL, robot_seconds = NULL",
+)
+"""Leave of a trial what an earlier affcli did that was stopped in it."""
 
 
 def now() -> str:
@@ -83,6 +93,27 @@ def solving(
     wanted = WantedTasks("extension-of-reach", goal, start)
     many = runs if isinstance(runs, list) else [runs]
     return solve(store, many, wanted, seed, now, planner, sensor)
+
+
+def breaking(
+    store: Store, run: LearningRunInfo, shape: str = "l-hook", seed: int = 0
+) -> Iterator[tuple[int, TrialRecord, float]]:
+    """Let the tool of a run break, and try what is left of it beside the whole one."""
+    return break_tool(store, run, tool_of(run.spec, shape), seed, now, PLANNER)
+
+
+def reproducing(store: Store, settings: Settings, robots: int, seed: int) -> Iterator[int]:
+    """Let robots live in this process."""
+    what = Reproduced(RunParts.chosen(settings), PLANNER, seed)
+    return reproduce(store, what, robots, 1, now)
+
+
+def altered(path: Path, *statements: str) -> None:
+    """Change the database as no affcli would."""
+    with sqlite3.connect(path) as driver:
+        for statement in statements:
+            driver.execute(statement)
+    driver.close()
 
 
 def counted(items: Iterable[object]) -> int:

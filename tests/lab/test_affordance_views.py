@@ -4,24 +4,36 @@ import itertools
 import sqlite3
 from collections import Counter
 from contextlib import closing
+from dataclasses import replace
 
 import pytest
-from affcli.report.fates import Fate, TableView
 
+from affcli.analysis.row_status import RowStatus
 from affcli.config import settings_with
-from affcli.core.trial import Protocol
-from affcli.errors import DatabaseError, UsageError
+from affcli.core.records import LearningRunInfo
+from affcli.core.specs import Protocol
+from affcli.core.tool import unknown_tool
+from affcli.errors import UsageError
 from affcli.lab.affordance_views import (
     row_shown,
     table_of_run,
     tables_around_trial,
     tables_compared,
 )
-from affcli.lab.breaking import break_tool
-from affcli.lab.learning import learn
-from affcli.lab.solving import solve
-from affcli.store import LearningRunInfo, Store
-from tests.lab.quick import IMPATIENT, counted, now, spec_of, taken
+from affcli.report.figures.affordances import affordances_figure
+from affcli.report.table_views import TableView
+from affcli.store import Store
+from tests.lab.quick import (
+    IMPATIENT,
+    INTERRUPTED,
+    altered,
+    breaking,
+    counted,
+    now,
+    solving,
+    spec_of,
+    stored,
+)
 
 BLURRED = settings_with({"sensor": {"position_noise": 0.25}, "trial": {"max_steps": 6}}, "a test")
 
@@ -29,10 +41,10 @@ BLURRED = settings_with({"sensor": {"position_noise": 0.25}, "trial": {"max_step
 @pytest.fixture
 def run(store: Store) -> LearningRunInfo:
     """A T-hook's learning run, in the store."""
-    return learn(store, spec_of("t-hook", 300, settings=IMPATIENT), now).info
+    return stored(store, spec_of("t-hook", 300, settings=IMPATIENT))
 
 
-def counts(view: TableView) -> Counter[Fate]:
+def counts(view: TableView) -> Counter[RowStatus]:
     return Counter(fate for _, fate in view.rows)
 
 
@@ -44,38 +56,38 @@ def names(view: TableView) -> tuple[set[str], set[str]]:
 def test_the_table_of_a_run_has_all_its_rows(store: Store, run: LearningRunInfo) -> None:
     shown = table_of_run(store, run)
     (view,) = shown.views
-    assert [row for row, _ in view.rows] == [stored.row for stored in store.affordances(run.id)]
-    assert counts(view) == {Fate.ROW: run.rows}
+    assert [row for row, _ in view.rows] == [row.row for row in store.learning.rows(run.id)]
+    assert counts(view) == {RowStatus.LIVE: run.rows}
     assert len(shown.calls) == 8
     assert shown.title == f"run {run.id}, t-hook, {run.rows} rows"
 
 
 def test_rows_that_solving_excluded_are_told_apart(store: Store, run: LearningRunInfo) -> None:
-    for stored in store.affordances(run.id)[:5]:
+    for row in store.learning.rows(run.id)[:5]:
         with closing(sqlite3.connect(store.path)) as driver, driver:
-            driver.execute(f"UPDATE affordance SET times_used = 2 WHERE id = {stored.id}")
+            driver.execute(f"UPDATE affordance SET times_used = 2 WHERE id = {row.id}")
     shown = table_of_run(store, run)
-    assert [fate for _, fate in shown.views[0].rows][:5] == [Fate.EXCLUDED] * 5
-    assert counts(shown.views[0]) == {Fate.ROW: run.rows - 5, Fate.EXCLUDED: 5}
+    assert [fate for _, fate in shown.views[0].rows][:5] == [RowStatus.EXCLUDED] * 5
+    assert counts(shown.views[0]) == {RowStatus.LIVE: run.rows - 5, RowStatus.EXCLUDED: 5}
     assert shown.title.endswith("rows, 5 of them excluded")
 
 
 def test_a_trial_with_a_broken_tool_loses_the_rows_that_died_in_it(
     store: Store, run: LearningRunInfo
 ) -> None:
-    counted(break_tool(store, run, "l-hook", 0, now))
-    trials = store.trials(run_id=run.id)
+    counted(breaking(store, run, "l-hook", 0))
+    trials = store.trials.trials(run_id=run.id)
     broken = [t for t in trials if t.spec.protocol is Protocol.TOOL_ADAPTATION]
-    died = {t.id: {s.affordance_id for s in store.trial_steps(t.id) if s.died} for t in trials}
+    died = {t.id: {s.affordance_id for s in store.trials.steps(t.id) if s.died} for t in trials}
     assert any(died[t.id] for t in broken)
     for trial in trials:
         shown = tables_around_trial(store, trial.id)
         before, after = shown.views
-        ids = [stored.id for stored in store.affordances(run.id)]
-        assert counts(before) == {Fate.ROW: run.rows}
-        lost = {i for i, (_, fate) in zip(ids, after.rows, strict=True) if fate is Fate.LOST}
+        ids = [row.id for row in store.learning.rows(run.id)]
+        assert counts(before) == {RowStatus.LIVE: run.rows}
+        lost = {i for i, (_, fate) in zip(ids, after.rows, strict=True) if fate is RowStatus.LOST}
         assert lost == died[trial.id]
-        assert counts(after)[Fate.KEPT] == run.rows - len(lost)
+        assert counts(after)[RowStatus.KEPT] == run.rows - len(lost)
         whole = {"handle", "left bar", "right bar", "left hook", "right hook"}
         assert names(before) == (whole, set())
         missing = {"right bar", "right hook"} if trial in broken else set()
@@ -86,28 +98,28 @@ def test_a_trial_with_a_broken_tool_loses_the_rows_that_died_in_it(
 
 def test_after_the_last_trial_of_solving_the_table_is_as_it_is_stored(store: Store) -> None:
     """Through a sensor so bad that rows die: what each trial found and left adds up."""
-    run = learn(store, spec_of("t-hook", 300, settings=BLURRED), now).info
-    counted(solve(store, [run], 1, (1, 2, 3, 4), 0, now))
-    counted(solve(store, [run], 3, (1, 2, 3, 4), 0, now))
-    trials = store.trials(run_id=run.id)
-    assert any(store.rows_excluded_before(trial.id) for trial in trials)
-    stored = table_of_run(store, run).views[0]
-    gone = {Fate.LOST, Fate.EXCLUDED}
+    run = stored(store, spec_of("t-hook", 300, settings=BLURRED))
+    counted(solving(store, run, "1"))
+    counted(solving(store, run, "3"))
+    trials = store.trials.trials(run_id=run.id)
+    assert any(store.trials.excluded_before(trial.id) for trial in trials)
+    as_it_is = table_of_run(store, run).views[0]
+    gone = {RowStatus.LOST, RowStatus.EXCLUDED}
     last = tables_around_trial(store, trials[-1].id).views[1]
-    assert [f in gone for _, f in last.rows] == [f is Fate.EXCLUDED for _, f in stored.rows]
+    assert [f in gone for _, f in last.rows] == [f is RowStatus.EXCLUDED for _, f in as_it_is.rows]
     for one, following in itertools.pairwise(trials):
         left = tables_around_trial(store, one.id).views[1]
         found = tables_around_trial(store, following.id).views[0]
-        assert [f in gone for _, f in left.rows] == [f is Fate.EXCLUDED for _, f in found.rows]
+        assert [f in gone for _, f in left.rows] == [f is RowStatus.EXCLUDED for _, f in found.rows]
 
 
 def test_two_runs_are_compared_each_over_its_own_tool(store: Store, run: LearningRunInfo) -> None:
-    other = learn(store, spec_of("l-hook", 300, settings=IMPATIENT), now).info
+    other = stored(store, spec_of("l-hook", 300, settings=IMPATIENT))
     shown = tables_compared(store, run, other)
     before, after = shown.views
     assert (before.heading, after.heading) == (f"Run {run.id}: T-hook", f"Run {other.id}: L-hook")
-    assert set(counts(before)) <= {Fate.KEPT, Fate.LOST}
-    assert set(counts(after)) <= {Fate.KEPT, Fate.WON}
+    assert set(counts(before)) <= {RowStatus.KEPT, RowStatus.LOST}
+    assert set(counts(after)) <= {RowStatus.KEPT, RowStatus.WON}
     assert (len(before.rows), len(after.rows)) == (run.rows, other.rows)
     assert names(after)[1] == {"right bar", "right hook"}
     # What hangs on the right bar and hook alone the L-hook cannot have learned.
@@ -117,14 +129,14 @@ def test_two_runs_are_compared_each_over_its_own_tool(store: Store, run: Learnin
         if row.exploratory.name == "contract arm" and row.start.wrist_to_object_x > 2.5
     ]
     assert pulls_on_the_right
-    assert set(pulls_on_the_right) == {Fate.LOST}
+    assert set(pulls_on_the_right) == {RowStatus.LOST}
     with pytest.raises(UsageError, match="that is the run itself"):
         tables_compared(store, run, run)
 
 
 def test_an_unfinished_run_says_how_far_it_came(store: Store) -> None:
     spec = spec_of("t-hook", 600)
-    info = store.begin_learning(spec, {}, now())
+    info = store.learning.begin(spec, {}, now())
     assert table_of_run(store, info).title == (
         f"run {info.id}, t-hook (unfinished, 0 min 00 s so far), 0 rows"
     )
@@ -133,32 +145,29 @@ def test_an_unfinished_run_says_how_far_it_came(store: Store) -> None:
 def test_a_row_is_shown_with_the_tool_of_its_own_settings(
     store: Store, run: LearningRunInfo
 ) -> None:
-    stored = store.affordances(run.id)[2]
-    title, view = row_shown(store, stored.id)
-    assert view.row == stored.row
+    one = store.learning.rows(run.id)[2]
+    title, view = row_shown(store, one.id)
+    assert view.row == one.row
     assert view.tool.name == "t-hook"
     assert view.puck_radius == 1.5
-    assert title == f"row {stored.id}, t-hook, {stored.row.exploratory} (run {run.id})"
+    assert title == f"row {one.id}, t-hook, {one.row.exploratory} (run {run.id})"
 
 
-@pytest.mark.parametrize(
-    ("spoilt", "says"),
-    [
-        ("learning_run SET tool = 'spoon'", "holds a tool that affcli does not know"),
-        ("affordance SET end_object_x = 1e300", "holds a value that affcli did not write"),
-        ("affordance SET start_object_y = 9e999", "holds a value that affcli did not write"),
-    ],
-)
-def test_what_affcli_did_not_write_is_named(
-    spoilt: str, says: str, store: Store, run: LearningRunInfo
+def test_a_tool_of_which_only_the_name_is_known_is_named_and_not_drawn(
+    store: Store, run: LearningRunInfo
 ) -> None:
-    with closing(sqlite3.connect(store.path)) as driver, driver:
-        driver.execute(f"UPDATE {spoilt}")
-    with pytest.raises(DatabaseError, match=says):
-        table_of_run(store, store.learning_run(run.id))
+    spoon = replace(run, spec=replace(run.spec, held=unknown_tool("spoon")))
+    shown = table_of_run(store, spoon)
+    assert shown.title == (
+        f"run {run.id}, spoon, {run.rows} rows; not drawn, for this affcli does not know the "
+        "shape: spoon"
+    )
+    assert (shown.views[0].parts, len(shown.views[0].rows)) == ((), run.rows)
+    assert affordances_figure(shown.calls, shown.views, shown.key).axes
 
 
 def test_an_interrupted_trial_shows_what_was_done(store: Store, run: LearningRunInfo) -> None:
-    taken(solve(store, [run], 2, (1,), 0, now), 1)
+    counted(solving(store, run, "2", "1"))
+    altered(store.path, *INTERRUPTED)
     shown = tables_around_trial(store, 1)
-    assert "trial 1, t-hook (unfinished, 1 step so far): " in shown.title
+    assert "trial 1, t-hook (unfinished, 2 steps so far): " in shown.title

@@ -6,20 +6,31 @@ from statistics import fmean
 import pytest
 
 from affcli.config import Settings, settings_with
-from affcli.core.trial import Outcome, Protocol
+from affcli.core.records import LearningRunInfo
+from affcli.core.specs import Protocol
+from affcli.core.trial import Outcome
 from affcli.errors import UsageError
 from affcli.lab.adaptation import adaptation_in
-from affcli.lab.breaking import break_tool
 from affcli.lab.drawing import require_figures
 from affcli.lab.film_strips import film_of
-from affcli.lab.learning import learn
 from affcli.lab.overview import reproduction_of
-from affcli.lab.reproduction import reproduce
 from affcli.lab.results import results_in
 from affcli.lab.sessions import finished_session
-from affcli.lab.solving import solve
-from affcli.store import LearningRunInfo, Store
-from tests.lab.quick import IMPATIENT, LEISURELY, counted, now, spec_of, taken
+from affcli.report.results import results_title
+from affcli.store import Store
+from tests.lab.quick import (
+    IMPATIENT,
+    INTERRUPTED,
+    LEISURELY,
+    altered,
+    breaking,
+    counted,
+    reproducing,
+    solving,
+    spec_of,
+    stored,
+    taken,
+)
 
 UNHURRIED = settings_with({"motion": {"hold": 10.0}, "trial": {"max_steps": 12}}, "a test")
 """An hour holds some hundred and fifty behaviors: enough to try in vain what was lost."""
@@ -28,17 +39,17 @@ UNHURRIED = settings_with({"motion": {"hold": 10.0}, "trial": {"max_steps": 12}}
 @pytest.fixture
 def run(store: Store) -> LearningRunInfo:
     """A T-hook's learning run, in the store."""
-    return learn(store, spec_of("t-hook", 250, settings=IMPATIENT), now).info
+    return stored(store, spec_of("t-hook", 250, settings=IMPATIENT))
 
 
 def test_a_film_has_the_steps_as_they_are_stored(store: Store, run: LearningRunInfo) -> None:
-    counted(break_tool(store, run, "l-hook", 0, now))
-    for info in store.trials():
-        film, stored = film_of(store, info.id), store.trial_steps(info.id)
+    counted(breaking(store, run, "l-hook", 0))
+    for info in store.trials.trials():
+        film, stored = film_of(store, info.id), store.trials.steps(info.id)
         assert [s.number for s in film.steps] == list(range(1, (info.steps or 0) + 1))
         for shown, step in zip(film.steps, stored, strict=True):
             assert (shown.puck_start, shown.puck_end) == (step.true_start, step.true_end)
-            assert (shown.wrist_start.point, shown.wrist_end.point) == (
+            assert (shown.wrist_start, shown.wrist_end) == (
                 step.wrist_start,
                 step.wrist_end,
             )
@@ -50,14 +61,14 @@ def test_a_film_has_the_steps_as_they_are_stored(store: Store, run: LearningRunI
         broken = info.spec.protocol is Protocol.TOOL_ADAPTATION
         assert [part.name for part in film.missing] == ["right bar", "right hook"] * broken
         assert film.ending == info.outcome
-        assert film.goal.number == info.spec.goal
+        assert film.goal == info.spec.task.goal
         if film.steps:
             assert film.steps[0].puck_start == pytest.approx(film.puck, abs=1e-9)
 
 
 def test_steps_that_a_trial_does_not_have_are_refused(store: Store, run: LearningRunInfo) -> None:
-    counted(solve(store, [run], 1, [1], 0, now))
-    (info,) = store.trials()
+    counted(solving(store, run, "1", "1"))
+    (info,) = store.trials.trials()
     assert film_of(store, info.id, (1, info.steps or 0)).steps
     for wanted in ((1, 99), (99, 99)):
         with pytest.raises(UsageError, match=f"it has steps 1 to {info.steps}"):
@@ -67,7 +78,8 @@ def test_steps_that_a_trial_does_not_have_are_refused(store: Store, run: Learnin
 
 
 def test_an_unfinished_trial_has_the_steps_there_are(store: Store, run: LearningRunInfo) -> None:
-    taken(solve(store, [run], 1, [1], 0, now), 2)
+    counted(solving(store, run, "1", "1"))
+    altered(store.path, *INTERRUPTED)
     film = film_of(store, 1)
     assert film.ending is None
     assert len(film.steps) == 2
@@ -77,13 +89,13 @@ def test_an_unfinished_trial_has_the_steps_there_are(store: Store, run: Learning
 def naive_course(store: Store, session: int, shape: str) -> list[list[tuple[bool, float]]]:
     """Return for each trial its steps: whether the row was lost; the mean probability after it."""
     course = []
-    for info in store.trials(session_id=session):
+    for info in store.trials.trials(session_id=session):
         if (info.spec.tool, info.spec.shape) != ("t-hook", shape):
             continue
-        rows = store.affordances(info.run_id)
+        rows = store.learning.rows(info.run_id)
         chance = {row.id: 1.0 for row in rows if row.row.start.wrist_to_object_x > 0.0}
         steps = []
-        for step in store.trial_steps(info.id):
+        for step in store.trials.steps(info.id):
             if step.affordance_id in chance:
                 chance[step.affordance_id] = step.times_successful_after / step.times_used_after
             steps.append((bool(step.lost), fmean(chance.values())))
@@ -95,13 +107,13 @@ def naive_course(store: Store, session: int, shape: str) -> list[list[tuple[bool
 def test_the_course_is_that_of_the_stored_steps(kind: str, store: Store) -> None:
     """The broken T-hook lacks its right side."""
     if kind == "break-tool":
-        run = learn(store, spec_of("t-hook", 400, settings=Settings()), now).info
-        counted(break_tool(store, run, "l-hook", 0, now))
+        run = stored(store, spec_of("t-hook", 400, settings=Settings()))
+        counted(breaking(store, run, "l-hook", 0))
     else:
-        counted(reproduce(store, UNHURRIED, 2, 5, 1, now))
+        counted(reproducing(store, UNHURRIED, 2, 5))
     course = adaptation_in(store, None)
-    broken = naive_course(store, course.session, "l-hook")
-    whole = naive_course(store, course.session, "t-hook")
+    broken = naive_course(store, course.session.id, "l-hook")
+    whole = naive_course(store, course.session.id, "t-hook")
     assert course.trials == len(broken)
     longest = max(map(len, broken))
     assert [share.number for share in course.shares] == list(range(1, longest + 1))
@@ -121,24 +133,24 @@ def test_the_course_is_that_of_the_stored_steps(kind: str, store: Store) -> None
 def test_a_tool_that_broke_on_both_sides_has_no_missing_side(
     store: Store, run: LearningRunInfo
 ) -> None:
-    counted(break_tool(store, run, "t-stick", 0, now))
+    counted(breaking(store, run, "t-stick", 0))
     course = adaptation_in(store, None)
     assert course.broken == course.whole == ()
     assert course.shares
 
 
 def test_a_tool_that_was_never_learned_to_move_anything_has_no_course(store: Store) -> None:
-    run = learn(store, spec_of("t-hook", 1, seed=2, settings=IMPATIENT), now).info
-    counted(break_tool(store, run, "l-hook", 0, now))
+    run = stored(store, spec_of("t-hook", 1, seed=2, settings=IMPATIENT))
+    counted(breaking(store, run, "l-hook", 0))
     with pytest.raises(UsageError, match="no trial with the broken tool took a step; learn the"):
         adaptation_in(store, None)
 
 
 def test_the_latest_finished_session_of_a_kind_is_taken(store: Store, run: LearningRunInfo) -> None:
     assert finished_session(store, None, ["break-tool"]) is None
-    counted(break_tool(store, run, "l-hook", 0, now))
-    counted(break_tool(store, run, "stick", 1, now))
-    taken(break_tool(store, run, "l-hook", 2, now), 1)
+    counted(breaking(store, run, "l-hook", 0))
+    counted(breaking(store, run, "stick", 1))
+    taken(breaking(store, run, "l-hook", 2), 1)
     assert adaptation_in(store, None).shape == "stick"
     assert adaptation_in(store, 1).shape == "l-hook"
     with pytest.raises(UsageError, match="session 3 is not finished; run affcli break-tool again"):
@@ -150,10 +162,10 @@ def test_the_latest_finished_session_of_a_kind_is_taken(store: Store, run: Learn
 
 
 def test_results_of_a_reproduction(store: Store) -> None:
-    taken(reproduce(store, LEISURELY, 2, 0, 1, now), 2)
+    taken(reproducing(store, LEISURELY, 2, 0), 2)
     with pytest.raises(UsageError, match="session 1 is not finished; give the same affcli reprod"):
         results_in(store, 1)
-    counted(reproduce(store, LEISURELY, 2, 0, 1, now))
+    counted(reproducing(store, LEISURELY, 2, 0))
     result, results = reproduction_of(store, 1, 2), results_in(store, None)
     assert {cell: list(beside.counts) for cell, beside in results.cells.items()} == result.cells
     assert results.total is not None
@@ -164,18 +176,20 @@ def test_results_of_single_robots(store: Store, run: LearningRunInfo) -> None:
     """Of each start the latest trial counts; an earlier learning run does not."""
     with pytest.raises(UsageError, match="no trials of affcli solve yet; run affcli reproduce"):
         results_in(store, None)
-    counted(solve(store, [run], 1, (1, 2, 3, 4), 0, now))
-    again = learn(store, spec_of("t-hook", 251, settings=IMPATIENT), now).info
-    counted(solve(store, [again], 3, (1, 2, 3), 0, now))
-    counted(solve(store, [again], 3, (3,), 1, now))
-    counted(break_tool(store, again, "l-hook", 0, now))
+    counted(solving(store, run, "1"))
+    again = stored(store, spec_of("t-hook", 251, settings=IMPATIENT))
+    counted(solving(store, again, "3", "1"))
+    counted(solving(store, again, "3", "2"))
+    counted(solving(store, again, "3", "3"))
+    counted(solving(store, again, "3", "3", seed=1))
+    counted(breaking(store, again, "l-hook", 0))
     results = results_in(store, None)
     tried = {cell: beside.tried for cell, beside in results.cells.items() if beside.tried}
-    assert tried == {("t-hook", 3): 3}
-    ended = {(t.spec.start, t.session_id): t.outcome for t in store.trials(run_id=again.id)}
-    latest = [ended[1, 2], ended[2, 2], ended[3, 3]]
-    assert list(results.cells["t-hook", 3].counts) == [latest.count(Outcome.SOLVED)]
-    assert results.title == f"one robot a tool: run {again.id} (noisy)"
+    assert tried == {("t-hook", "3"): 3}
+    ended = {(t.spec.start, t.session_id): t.outcome for t in store.trials.trials(run_id=again.id)}
+    latest = [ended["1", 2], ended["2", 3], ended["3", 5]]
+    assert list(results.cells["t-hook", "3"].counts) == [latest.count(Outcome.SOLVED)]
+    assert results_title(results) == f"one robot a tool: run {again.id} (noisy)"
     assert results.broken is not None
     assert results.total is None
 

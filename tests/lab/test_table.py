@@ -8,13 +8,17 @@ import pytest
 from shapely import Point as ShapelyPoint
 from shapely import Polygon
 
+from affcli.analysis.regions import UNKNOWN, region_of
 from affcli.config import Settings, settings_with
-from affcli.core.tool import TOOL_PARTS
-from affcli.errors import DatabaseError
-from affcli.lab.table import every_run, history_of, listed_rows, region_of, taken_out, tool_of
-from affcli.store import Column, LearningRunInfo, RowFilter, Store, StoredRow
+from affcli.core.records import LearningRunInfo, StoredRow
+from affcli.core.row_filter import Column, RowFilter
+from affcli.core.tool import unknown_tool
+from affcli.lab.run_parts import RunParts
+from affcli.lab.table import every_run, history_of, listed_rows, taken_out
+from affcli.simulation.tools.paper import TOOL_PARTS
+from affcli.store import Store
 from tests.lab.quick import NOW, learned, spec_of
-from tests.store.records import SETTINGS, VERSIONS, robot_record, trial_record, trial_spec
+from tests.store.records import VERSIONS, begun, robot_record, trial_record, trial_spec
 
 NARROW = settings_with({"tools": {"bar_reach": 3.0}}, "a test")
 """The hooks are nearer to the handle than by default."""
@@ -27,10 +31,10 @@ def runs(store: Store) -> list[LearningRunInfo]:
     found = []
     for spec in (spec_of(), spec_of("stick")):
         for settings in (Settings(), NARROW):
-            own = replace(spec, settings=settings.to_json())
-            run = store.begin_learning(own, VERSIONS, NOW)
-            store.append_learning(run.id, 0, learned(spec), None, 1.0, done=True, now=NOW)
-            found.append(store.learning_run(run.id))
+            own = RunParts.chosen(settings).spec(spec.tool, 0, 0, None, 400)
+            run = store.learning.begin(own, VERSIONS, NOW)
+            store.learning.append(run.id, 0, learned(spec), None, 1.0, done=True, now=NOW)
+            found.append(store.learning.run(run.id))
     return found
 
 
@@ -38,7 +42,7 @@ def nearest_part(run: LearningRunInfo, row: StoredRow) -> str:
     """Return the nearest part as another library finds it."""
     place = ShapelyPoint(*row.row.start.wrist_to_object)
     away = {
-        part.name: Polygon(part.outline.vertices).distance(place) for part in tool_of(run).parts
+        part.name: Polygon(part.outline.vertices).distance(place) for part in run.spec.held.parts
     }
     return min(away, key=lambda name: round(away[name], 9))
 
@@ -55,11 +59,13 @@ def test_the_region_is_that_of_the_tool_as_the_run_made_it(
     for run in runs:
         rows = listed_rows(store, [run], RowFilter(runs=(run.id,)), None)
         assert len(rows) > 20
-        assert [row for row, _ in rows] == list(store.affordances(run.id))
+        assert [row for row, _ in rows] == list(store.learning.rows(run.id))
         assert [region for _, region in rows] == [nearest_part(run, row) for row, _ in rows]
-        assert [region for _, region in rows] == [region_of(tool_of(run), row) for row, _ in rows]
+        assert [region for _, region in rows] == [
+            region_of(run.spec.held, row.row) for row, _ in rows
+        ]
         regions[run.id] = [region for _, region in rows]
-        assert set(regions[run.id]) <= set(TOOL_PARTS[tool_of(run).name])
+        assert set(regions[run.id]) <= set(TOOL_PARTS[run.spec.held.name])
     first, narrow, *sticks = regions.values()
     assert first != narrow
     assert {region for of_stick in sticks for region in of_stick} == {"handle"}
@@ -104,11 +110,11 @@ def test_rows_of_a_run_begun_since_are_left_out(store: Store, runs: list[Learnin
 def test_every_run_is_there_also_unfinished_and_of_robots(
     store: Store, runs: list[LearningRunInfo]
 ) -> None:
-    begun = store.begin_learning(spec_of("l-hook"), VERSIONS, NOW)
-    session = store.begin_session("reproduce", 0, 1, SETTINGS, VERSIONS, NOW)
-    store.save_robot(session, robot_record(0), VERSIONS, NOW)
+    unfinished = store.learning.begin(spec_of("l-hook"), VERSIONS, NOW)
+    session = begun(store, "reproduce")
+    store.sessions.save_robot(session, robot_record(0), VERSIONS, NOW)
     found = every_run(store)
-    assert [run.id for run in found] == [*(run.id for run in runs), begun.id, 6, 7]
+    assert [run.id for run in found] == [*(run.id for run in runs), unfinished.id, 6, 7]
     assert [run.session_id for run in found] == [None] * 5 + [session] * 2
     assert found[4].status == "running"
 
@@ -117,14 +123,14 @@ def test_the_history_of_a_row_names_the_trial_of_each_step(
     store: Store, runs: list[LearningRunInfo]
 ) -> None:
     run = runs[0]
-    table, ids = store.affordance_table(run.id)
+    table, ids = store.learning.table(run.id)
     specs = [
         trial_spec(1, start, shape=shape) for start in (1, 2) for shape in ("t-hook", "l-hook")
     ]
-    session = store.begin_session("break-tool", 0, 1, SETTINGS, VERSIONS, NOW)
+    session = begun(store, "break-tool")
     row, other = table.row(3), table.row(4)
     trials = [trial_record(spec, [row, other, row]) for spec in specs]
-    store.save_trials(session, run.id, trials, ids)
+    store.trials.save_all(session, run.id, trials, ids)
     history = history_of(store, ids[row.step])
     assert [spec for _, spec in history] == [spec for spec in specs for _ in range(2)]
     assert [step.number for step, _ in history] == [1, 3] * 4
@@ -132,7 +138,8 @@ def test_the_history_of_a_row_names_the_trial_of_each_step(
     assert history_of(store, ids[table.row(5).step]) == []
 
 
-def test_a_tool_that_nobody_knows_is_named(store: Store, runs: list[LearningRunInfo]) -> None:
-    spec = replace(runs[0].spec, tool="=cmd")
-    with pytest.raises(DatabaseError, match="learning run 1 holds a tool that affcli does not kn"):
-        tool_of(replace(runs[0], spec=spec))
+def test_a_tool_that_nobody_knows_has_no_regions(store: Store, runs: list[LearningRunInfo]) -> None:
+    unknown = replace(runs[0], spec=replace(runs[0].spec, held=unknown_tool("=cmd")))
+    rows = listed_rows(store, [unknown], RowFilter(runs=(1,)), None)
+    assert {region for _, region in rows} == {UNKNOWN}
+    assert listed_rows(store, [unknown], RowFilter(runs=(1,)), "handle") == []

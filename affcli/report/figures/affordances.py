@@ -99,7 +99,8 @@ def _draw_table(
     # The attractor beside the grasp point, to scale: an arrow begins at its middle.
     corners = [c for part in (*view.parts, *view.missing) for c in part.outline.vertices]
     radius = view.puck_radius
-    place = Point(min(x for x, _ in corners) - 2 * radius, min(y for _, y in corners) + radius)
+    left, bottom = (min((c[i] for c in corners), default=0.0) for i in (0, 1))
+    place = Point(left - 2 * radius, bottom + radius)
     draw_puck(panels[0], place, radius, before=True, color=FAINT)
     panels[0].text(place.x, place.y + 1.2 * radius, "puck", ha="center", va="bottom", fontsize=6.0)
     return panels

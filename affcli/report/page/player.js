@@ -252,7 +252,7 @@
       ? `of the ${nearest} row${nearest === 1 ? "" : "s"} that should leave the puck nearest the goal it needs the least re-positioning, ${travel} in.`
       : `chosen by ${trial.planner}; the wrist travels ${travel} in.`;
     const hold = step.hold ? ` The tool was grasped anew first: ${step.hold}.` : "";
-    const lead = html("p", `Row ${id}, ${behavior}: ${reason} The puck is ${step.distance_to_goal.toFixed(1)} in from the goal's centre and should end ${ends} in from it.${hold}`, "answer");
+    const lead = html("p", `Row ${id}, ${behavior}: ${reason} The puck is ${step.distance_to_goal?.toFixed(1)} in from the goal's centre and should end ${ends} in from it.${hold}`, "answer");
     const outcome = html("p");
     const word = step.blocked ? "blocked: the tool would have come down on the puck, counted as a failure" : step.replicated ? "as expected (within 40 degrees)" : "not as expected";
     outcome.append(`Expected ${step.expected[2]}, seen ${step.seen[2]}: `, html("span", word, step.replicated ? "yes" : "no"),

@@ -15,6 +15,7 @@ from affcli.core.replay import Replay
 from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome
 from affcli.errors import one_line
+from affcli.report.json_table import plain
 from affcli.report.page import answers, drawings, films
 from affcli.report.page.content import Broken, Content, LearnedRows
 from affcli.report.reproduction import reproduction_json
@@ -68,12 +69,14 @@ def render(content: Content, command: str) -> str:
         planners=len({trial["planner"] for trial in trials}) > 1,
         same=answers.same(content),
         left_out=answers.left_out(content),
-        data={
-            "unit": films.UNIT,
-            "worlds": [films.world_data(workspace) for workspace in worlds],
-            "trials": trials,
-            "first": _worth_seeing(trials),
-        },
+        data=plain(
+            {
+                "unit": films.UNIT,
+                "worlds": [films.world_data(workspace) for workspace in worlds],
+                "trials": trials,
+                "first": _worth_seeing(trials),
+            }
+        ),
         broken=[_broken_section(broken) for broken in content.broken],
         kinds=KINDS,
         goals=GOALS,
