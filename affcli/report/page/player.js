@@ -93,7 +93,7 @@
       make("polygon", { class: "goal", points: trial.region }, flip);
       const corners = trial.region.split(" ").map((corner) => corner.split(",").map(Number));
       const x = Math.min(...corners.map((c) => c[0])), y = Math.max(...corners.map((c) => c[1]));
-      make("text", { class: "label", x: x + 0.3, y: -y + 1.2 }, svg).textContent = `G${trial.goal}`;
+      make("text", { class: "label", x: x + 0.3, y: -y + 1.2 }, svg).textContent = /^\d+$/.test(trial.goal) ? `G${trial.goal}` : trial.goal;
     }
     make("text", { class: "label", x: 0, y: -bottom - 0.5, "text-anchor": "middle" }, svg).textContent = "the robot stands here";
     const path = make("polyline", { class: "path" }, flip);
