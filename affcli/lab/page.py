@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from affcli.analysis.paper import TOOLS
 from affcli.analysis.reproduction import Reproduction
-from affcli.core.records import LearningRunInfo, SessionInfo, TrialInfo
+from affcli.core.records import LearningRunInfo, TrialInfo
 from affcli.core.replay import Replay
 from affcli.core.specs import Counters
 from affcli.errors import AffcliError, UsageError, one_line
@@ -74,22 +74,15 @@ def content_of(
 
 def _reproduction(store: Store, session: int | None) -> Reproduction | None:
     """Return what the robots of a reproduction gave; of the latest with robots, None without."""
-    found = _session(store, session)
-    if found is None:
+    saved = {s.id: store.sessions.saved_robots(s.id) for s in store.sessions.all("reproduce")}
+    robots = {number: len(some) for number, some in saved.items() if some}
+    if session is None and not robots:
         return None
-    return reproduction_of(store, found.id, len(store.sessions.saved_robots(found.id)))
-
-
-def _session(store: Store, session: int | None) -> SessionInfo | None:
-    """Return a reproduction that has robots; the latest for None."""
-    sessions = [s for s in store.sessions.all("reproduce") if store.sessions.saved_robots(s.id)]
-    if session is None:
-        return sessions[-1] if sessions else None
-    found = [s for s in sessions if s.id == session]
-    if not found:
-        known = ", ".join(str(s.id) for s in sessions) or "none"
+    number = max(robots) if session is None else session
+    if number not in robots:
+        known = ", ".join(map(str, robots)) or "none"
         raise UsageError(f"session {session} is no reproduction with robots; there are: {known}")
-    return found[0]
+    return reproduction_of(store, number, robots[number])
 
 
 def _life(

@@ -36,8 +36,6 @@ def explain_trial(spec: TrialSpec, end: TrialEnd, steps: Steps) -> RenderableTyp
     head.append(end.outcome.value, style="green" if solved else "red")
     head.append(f" ({many(end.steps, 'step')})")
     lines: list[RenderableType] = [head]
-    if str(spec.planner) != PLANNER:
-        lines.append(_indented(2, f"planner: {spec.planner}"))
     for row, step in steps:
         lines.append(
             _indented(2, f"step {step.number}: row {row}, {call_words(step.row.exploratory)}")

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Iterable
 
-from affcli.analysis.paper import other_parts
+from affcli.analysis.paper import PLANNER, other_parts
 from affcli.core.behavior import BehaviorCall
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.choice import Reason, Reasons
@@ -118,9 +118,10 @@ def run_words(spec: LearningSpec | SessionSpec) -> str:
 
 
 def trial_words(spec: TrialSpec) -> str:
-    """Return which trial: ``t-hook (truly l-hook), goal 3, start 1``."""
+    """Return which trial: ``t-hook (truly l-hook), goal 3, start 1``, and a planner of its own."""
     truly = "" if spec.shape == spec.tool else f" (truly {spec.shape})"
-    return one_line(f"{spec.tool}{truly}, goal {spec.goal}, start {spec.start}")
+    planner = "" if str(spec.planner) == PLANNER else f", planner {spec.planner}"
+    return one_line(f"{spec.tool}{truly}, goal {spec.goal}, start {spec.start}{planner}")
 
 
 def unknown_shapes(tools: Iterable[Tool]) -> str:
