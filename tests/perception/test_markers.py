@@ -120,7 +120,7 @@ def test_a_missing_marker_is_counted() -> None:
         find_markers(painted(truth[7], (215, 220, 222), 11), TABLE_PATTERN)
 
 
-OUTLIERS = {
+OUTLIERS: dict[str, list[tuple[float, float]]] = {
     "at the edge": [(637.0, 329.0)],
     "at a corner": [(2.0, 2.0), (637.0, 477.0)],
     "between two markers": [(0.5, 0)],
