@@ -15,6 +15,7 @@ from affcli.core.geometry import Point
 from affcli.core.tool import Color
 from affcli.errors import BadInputError
 from affcli.perception.camera import Array
+from affcli.perception.grid_search import grid_among
 from affcli.perception.palette import (
     CLOSEST_HUES,
     ColorClass,
@@ -39,6 +40,8 @@ OFF_GRID = 0.35
 the grid by a tenth of that, and beyond a half the order would be a guess."""
 MOST_CORNERS = 24
 """Of a hull; a pattern of 6x6 has 20 at the most."""
+MOST_THINGS = 4
+"""Times as many things as there are markers, among which a grid is looked for."""
 OVER_EXPOSED = 0.5
 """Share of white pixels above which a picture is called over-exposed."""
 
@@ -75,6 +78,8 @@ class Pattern:
 def find_markers(picture: Picture, pattern: Pattern, color: Color | None = None) -> Array:
     """Return the centroids of the pattern's markers in the order of `Pattern.places`.
 
+    Other things of their colour may lie about: the grid is found among them.
+
     Args:
         picture: blue green red.
         pattern: what to look for.
@@ -84,12 +89,12 @@ def find_markers(picture: Picture, pattern: Pattern, color: Color | None = None)
         (rows * columns, 2), px.
 
     Raises:
-        BadInputError: too few markers or too many, one cut off by the edge, or no grid.
+        BadInputError: too few markers, or no grid of them.
     """
     wanted = pattern.rows * pattern.columns
     groups = [_like_sized(blobs, wanted) for blobs in _blobs_by_hue(picture, color)]
-    blobs = min(groups, key=lambda group: (abs(len(group) - wanted), -len(group)), default=[])
-    if len(blobs) < 3:
+    groups.sort(key=lambda group: (abs(len(group) - wanted), -len(group)))
+    if not groups or len(groups[0]) < 3:
         white = float((picture.min(axis=2) >= 250).mean())
         why = (
             f"{white:.0%} of the picture is white, it is over-exposed"
@@ -98,18 +103,39 @@ def find_markers(picture: Picture, pattern: Pattern, color: Color | None = None)
         )
         raise BadInputError(f"no markers found: {why}")
     height, width = picture.shape[:2]
-    cut = [b for b in blobs if _at_edge(b, width, height)]
+    for group in groups:
+        # A pattern that is whole in view does not touch the edge.
+        whole = np.array([(b.x, b.y) for b in group if not _at_edge(b, width, height)])
+        if len(whole) == wanted and group is groups[0]:
+            return ordered(whole, pattern)
+        if wanted <= len(whole) <= MOST_THINGS * wanted:
+            grid = grid_among(whole, pattern.columns, pattern.rows)
+            if grid is not None:
+                return ordered(grid, pattern)
+    raise _no_grid(groups[0], pattern, (width, height))
+
+
+def _no_grid(blobs: Sequence[Blob], pattern: Pattern, size: tuple[int, int]) -> BadInputError:
+    """Return what is wrong with blobs that hold no grid of the pattern."""
+    wanted = pattern.rows * pattern.columns
+    cut = [blob for blob in blobs if _at_edge(blob, *size)]
+    found = len(blobs) - len(cut)
+    if found > wanted:
+        return BadInputError(
+            f"{found} things of one colour found, and no grid of {pattern.columns}x{pattern.rows} "
+            "among them; uncover all markers and nothing else of their colour, or name it with "
+            "--marker-color"
+        )
     if cut:
-        raise BadInputError(
-            f"a marker at ({cut[0].x:.0f}, {cut[0].y:.0f}) px is cut off by the edge of the "
-            "picture; bring the whole pattern into view"
+        return BadInputError(
+            f"{found} markers found instead of {wanted}, and something of their colour at "
+            f"({cut[0].x:.0f}, {cut[0].y:.0f}) px is cut off by the edge of the picture; bring the "
+            "whole pattern into view"
         )
-    if len(blobs) != wanted:
-        raise BadInputError(
-            f"{len(blobs)} markers found instead of {wanted}; uncover all of them and nothing else "
-            "of their colour, or name it with --marker-color"
-        )
-    return ordered(np.array([(b.x, b.y) for b in blobs]), pattern)
+    return BadInputError(
+        f"{found} markers found instead of {wanted}; uncover all of them and nothing else of their "
+        "colour, or name it with --marker-color"
+    )
 
 
 def ordered(points: Array, pattern: Pattern) -> Array:

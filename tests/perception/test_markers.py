@@ -1,5 +1,8 @@
 """The markers: found by colour, ordered into the grid from any view."""
 
+import math
+import re
+
 import cv2
 import numpy as np
 import pytest
@@ -13,6 +16,7 @@ from affcli.errors import BadInputError
 from affcli.perception.camera import Array, Camera
 from affcli.perception.camera_sensor import MARKER_RADIUS, picture_of_pattern, table_pattern
 from affcli.perception.camera_settings import CameraSettings
+from affcli.perception.grid_search import grid_among
 from affcli.perception.markers import Pattern, find_markers, ordered
 from affcli.perception.palette import MARKER_COLOR
 from affcli.perception.rendering import Picture, Renderer
@@ -105,20 +109,114 @@ def test_their_colour_is_found_among_others() -> None:
     assert np.allclose(found, find_markers(picture(), TABLE_PATTERN, MARKER_COLOR), atol=0.02)
 
 
-def test_a_missing_marker_and_one_too_many_are_counted() -> None:
+RED = (40, 40, 200)
+"""The colour of the markers, blue green red."""
+REFERENCE = find_markers(picture(), TABLE_PATTERN, MARKER_COLOR)
+
+
+def test_a_missing_marker_is_counted() -> None:
     truth = flat(CAMERA.camera(), TABLE_PATTERN.places)
     with pytest.raises(BadInputError, match="35 markers found instead of 36"):
         find_markers(painted(truth[7], (215, 220, 222), 11), TABLE_PATTERN)
-    between = 0.5 * (truth[0] + truth[7])
-    with pytest.raises(BadInputError, match="37 markers found instead of 36"):
-        find_markers(painted(between, (40, 40, 200), 6), TABLE_PATTERN)
+
+
+OUTLIERS: dict[str, list[tuple[float, float]]] = {
+    "at the edge": [(637.0, 329.0)],
+    "at a corner": [(2.0, 2.0), (637.0, 477.0)],
+    "between two markers": [(0.5, 0)],
+    "between four": [(2.5, 3.5)],
+    "beside the grid": [(6.0, 2.0)],
+    "before and behind it": [(-1.0, 3.0), (3.0, 6.0)],
+    "beyond a corner": [(5.7, 5.7), (-0.8, -0.7)],
+    "many": [(0.5, 0.5), (2.5, 1.5), (4.5, 3.5), (1.5, 4.5), (5.5, 2.4), (-0.6, 5.0)],
+}
+"""Where, in pixels or else in spacings from the first marker, there are more red things."""
+
+
+def pixel(place: tuple[float, float]) -> Array:
+    if max(place) > 100.0 or place == (2.0, 2.0):
+        return np.array(place)
+    spaced = np.array([TABLE_PATTERN.origin]) + TABLE_PATTERN.spacing * np.array([place])
+    found: Array = flat(CAMERA.camera(), spaced)[0]
+    return found
+
+
+@pytest.mark.parametrize("color", [None, MARKER_COLOR])
+@pytest.mark.parametrize("places", OUTLIERS.values(), ids=OUTLIERS.keys())
+def test_the_grid_is_found_among_other_things_of_its_colour(
+    places: list[tuple[float, float]], color: Color | None
+) -> None:
+    changed = picture().copy()
+    for place in places:
+        x, y = (round(float(value)) for value in pixel(place))
+        cv2.circle(changed, (x, y), 6, RED, -1)
+    assert np.allclose(find_markers(changed, TABLE_PATTERN, color), REFERENCE, atol=0.02)
+
+
+def test_a_thing_at_the_edge_is_not_called_a_marker() -> None:
+    """One marker is covered, and something of their colour lies at the picture's edge."""
+    truth = flat(CAMERA.camera(), TABLE_PATTERN.places)
+    changed = painted(truth[7], (215, 220, 222), 11)
+    cv2.circle(changed, (637, 329), 6, RED, -1)
+    with pytest.raises(BadInputError) as raised:
+        find_markers(changed, TABLE_PATTERN)
+    says = (
+        r"35 markers found instead of 36, and something of their colour at \(63\d, 329\) px is cut"
+    )
+    assert re.match(says, str(raised.value))
+
+
+def test_a_covered_marker_is_missed_among_other_things() -> None:
+    truth = flat(CAMERA.camera(), TABLE_PATTERN.places)
+    changed = painted(truth[7], (215, 220, 222), 11)
+    for place in OUTLIERS["many"]:
+        x, y = (round(float(value)) for value in pixel(place))
+        cv2.circle(changed, (x, y), 6, RED, -1)
+    with pytest.raises(BadInputError, match="41 things of one colour found, and no grid of 6x6"):
+        find_markers(changed, TABLE_PATTERN)
+
+
+def test_a_larger_pattern_is_not_cut_to_size() -> None:
+    """Which 5 of its 6 rows would be meant?"""
+    with pytest.raises(BadInputError, match="36 things of one colour found, and no grid of 6x5"):
+        find_markers(picture(), Pattern(6, 5, 5.0, TABLE_PATTERN.origin))
+
+
+@settings(deadline=None, max_examples=60)
+@given(cameras, st.integers(0, 2**32 - 1))
+def test_any_view_of_all_markers_is_found_among_things_anywhere(camera: Camera, seed: int) -> None:
+    """Up to ten of them, none of which is taken for a marker that it lies on."""
+    pixels = flat(camera, PATTERN.places)
+    if not np.isfinite(pixels).all():
+        return
+    rng = np.random.default_rng(seed)
+    low, high = pixels.min(axis=0) - 60.0, pixels.max(axis=0) + 60.0
+    things = rng.uniform(low, high, (int(rng.integers(11)), 2))
+    gaps = np.linalg.norm(things[:, None] - pixels[None], axis=2).min(axis=1, initial=math.inf)
+    spacing = np.linalg.norm(pixels[1:6] - pixels[0:5], axis=1).max()
+    things = things[gaps > 0.4 * spacing]
+    found = grid_among(rng.permutation(np.concatenate([pixels, things])), 6, 6)
+    assert found is not None
+    assert np.array_equal(np.unique(found, axis=0), np.unique(pixels, axis=0))
+
+
+def test_what_lies_on_a_markers_place_beside_it_is_a_doubt() -> None:
+    pixels = flat(camera_at(60.0, 30.0, 200.0), PATTERN.places)
+    doubled = np.concatenate([pixels, pixels[14:15] + 4.0])
+    assert grid_among(doubled, 6, 6) is None
+
+
+def test_without_a_grid_there_is_an_answer_soon() -> None:
+    things = np.random.default_rng(8).uniform(0.0, 500.0, (144, 2))
+    assert grid_among(things, 6, 6) is None
 
 
 def test_a_marker_cut_off_by_the_edge_is_named() -> None:
     truth = flat(CAMERA.camera(), TABLE_PATTERN.places)
     column = round(float(truth[:, 0].max()))
     cut = np.ascontiguousarray(picture()[:, :column])
-    with pytest.raises(BadInputError, match=r"a marker at \(\d+, \d+\) px is cut off by the edge"):
+    says = r"\d+ markers found instead of 36, and something of their colour at .* is cut off by"
+    with pytest.raises(BadInputError, match=says):
         find_markers(cut, TABLE_PATTERN)
 
 
