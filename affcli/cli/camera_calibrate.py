@@ -102,7 +102,7 @@ def calibrate(
 
     require_camera()
     if image is None:
-        found = lab.viewing.eye_at(load_settings(config), seed).calibration
+        found = lab.photographs.eye_at(load_settings(config), seed).calibration
     else:
         pattern = lab.photographs.pattern_of(columns, rows, spacing, first, turn)
         found = lab.photographs.calibrate_picture(image, pattern, color, sensor_width)
