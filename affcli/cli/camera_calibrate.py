@@ -107,7 +107,7 @@ def calibrate(
 
     require_camera()
     if image is None:
-        found = lab.viewing.eye_at(load_settings(config), seed).calibration
+        found = lab.photographs.eye_at(load_settings(config), seed).calibration
         values = found.as_json()
     else:
         pattern = lab.photographs.pattern_of(columns, rows, spacing, first, turn)

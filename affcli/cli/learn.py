@@ -26,8 +26,9 @@ from affcli.cli.options import (
 )
 from affcli.cli.terminal import now, progress, say, show_either
 from affcli.config import load_settings, with_sensor
+from affcli.core.limits import MOST_BEHAVIORS
 from affcli.core.records import AlikeRun, LearningRunInfo
-from affcli.core.specs import MOST_BEHAVIORS, LearningSpec
+from affcli.core.specs import LearningSpec
 from affcli.errors import UsageError
 from affcli.report.learning import groups_json, groups_table, run_json, summary
 from affcli.simulation.tools.paper import TOOL_PARTS
@@ -97,7 +98,7 @@ def learn(
     specs = [parts.spec(name, seed, 0, hours, behaviors) for name in names]
     with opened(database, create=bool(names), write=True) as store:
         if not names:
-            specs = [run.spec for run in store.learning.runs(status="running")]
+            specs = lab.learning.interrupted(store)
             if not specs:
                 raise UsageError(f"nothing to resume in {database}; learn a tool: --tool t-hook")
         results = [_learn(store, spec) for spec in specs]

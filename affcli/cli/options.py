@@ -14,10 +14,10 @@ import typer
 
 from affcli import registry
 from affcli.core.identity import Component
+from affcli.core.limits import LARGEST_SEED, LONGEST_HOURS
 from affcli.core.names import one_of
 from affcli.core.observation import SENSOR_KINDS, SensorKind
 from affcli.core.part import Kind
-from affcli.core.specs import LARGEST_SEED, LONGEST_HOURS
 from affcli.errors import BadInputError, one_line
 
 LARGEST_ID = LARGEST_SEED

@@ -11,7 +11,7 @@ from affcli.cli.database import opened
 from affcli.cli.files import require_new, save
 from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database, Force, check_count
 from affcli.cli.terminal import progress, say, show_either
-from affcli.core.specs import MOST_ROBOTS
+from affcli.core.limits import MOST_ROBOTS
 from affcli.errors import BadInputError, UsageError, one_line
 from affcli.report import page
 from affcli.report.overview import overview_json, overview_tables

@@ -27,7 +27,7 @@ from affcli.cli.options import (
 )
 from affcli.cli.terminal import now, progress, say, show_either
 from affcli.config import load_settings, with_sensor
-from affcli.core.specs import MOST_ROBOTS
+from affcli.core.limits import MOST_ROBOTS
 from affcli.errors import UsageError
 from affcli.report.reproduction import reproduction_json, reproduction_tables
 

@@ -18,11 +18,6 @@ from affcli.core.task import Task
 from affcli.core.tool import Tool
 from affcli.core.trial import BabblingRecord, TrialEnd, TrialStep, Truth
 
-LARGEST_SEED = 2**63 - 1
-LONGEST_HOURS = 10_000.0
-MOST_BEHAVIORS = 10_000_000
-MOST_ROBOTS = 100_000
-
 
 class Protocol(StrEnum):
     """What a testing trial is part of."""

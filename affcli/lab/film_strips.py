@@ -6,8 +6,7 @@ from affcli.core.geometry import Pose
 from affcli.core.records import StoredStep, TrialInfo
 from affcli.core.tool import hold_of
 from affcli.errors import UsageError, one_line
-from affcli.lab.replaying import require_shape
-from affcli.lab.run_parts import settings_of
+from affcli.lab.run_parts import require_shape, settings_of
 from affcli.report.film import FilmedStep, FilmedTrial
 from affcli.store import Store
 
@@ -28,7 +27,8 @@ def film_of(store: Store, trial_id: int, wanted: tuple[int, int] | None = None) 
         DatabaseError: it is not known what its tools look like.
     """
     info = store.trials.trial(trial_id)
-    require_shape(info)
+    for tool in (info.learned.held, info.spec.held):
+        require_shape(tool, f"trial {trial_id}: ")
     steps = tuple(map(_filmed, store.trials.steps(trial_id)))
     if wanted is not None:
         _require_steps(trial_id, wanted, len(steps))

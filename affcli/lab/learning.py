@@ -7,6 +7,7 @@ from itertools import islice
 from affcli.config import first_defaults, known_settings
 from affcli.core.records import AlikeRun, ChangedPart, LearningRunInfo
 from affcli.core.specs import LearningSpec, LearningStep
+from affcli.errors import DatabaseError
 from affcli.store import Store
 
 CHUNK = 500
@@ -85,6 +86,22 @@ def _chunks(steps: Iterator[LearningStep], size: int | None) -> Iterator[Sequenc
     """Gather steps into chunks of this size, all in one for None; the last may be shorter."""
     while chunk := list(islice(steps, size)):
         yield chunk
+
+
+def interrupted(store: Store) -> list[LearningSpec]:
+    """Return what the runs that have not come to their end are functions of, oldest first.
+
+    Raises:
+        DatabaseError: one is not the run that its key stands for.
+    """
+    runs = store.learning.runs(status="running")
+    for run in runs:
+        if store.learning.find(run.spec) is None:
+            raise DatabaseError(
+                f"learning run {run.id} holds values that its key does not stand for; restore a "
+                "copy of the database"
+            )
+    return [run.spec for run in runs]
 
 
 def made_by_other_defaults(store: Store, spec: LearningSpec) -> tuple[AlikeRun, ...]:

@@ -4,21 +4,31 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from affcli.config import load_colors
+from affcli import registry
+from affcli.config import Settings, load_colors
 from affcli.core.geometry import Point
 from affcli.core.tool import Color
 from affcli.errors import BadInputError, one_line
-from affcli.simulation.sensing import require_camera
+from affcli.simulation.sensing import eye_of, require_camera
 
 if TYPE_CHECKING:
     from affcli.perception.calibration import Calibration
     from affcli.perception.camera import Camera
+    from affcli.perception.camera_sensor import Eye
     from affcli.perception.capture import Capture
     from affcli.perception.location import Place
     from affcli.perception.markers import Pattern
 
+SHOWN = "t-hook"
+"""The tool in a picture that is of no run."""
 LARGEST_FILE = 1_000_000
 """Bytes of a file of a calibration; one of 36 markers takes some 6,000."""
+
+
+def eye_at(settings: Settings, seed: int) -> "Eye":
+    """Return a camera of these settings, and of robot 0, which may see the tool that is shown."""
+    tool = registry.tool(SHOWN, settings.workspace.tools)
+    return eye_of(settings.camera, settings.workspace, tool, seed, 0)
 
 
 def pattern_of(columns: int, rows: int, spacing: float, origin: Point, turn: int) -> "Pattern":

@@ -12,16 +12,16 @@ from affcli.core.choice import Candidate, Choice, Situation
 from affcli.core.goal import Goal
 from affcli.core.observation import Observation
 from affcli.core.ports import Planner
-from affcli.core.records import LearningRunInfo, TrialInfo
+from affcli.core.records import LearningRunInfo
 from affcli.core.replay import Considered, Replay, ReplayedBehavior, ReplayedStep
 from affcli.core.scene import Scene
 from affcli.core.specs import Counters
 from affcli.core.trial import TrialStep
 from affcli.core.world import Setting, World
-from affcli.errors import DatabaseError, UsageError
+from affcli.errors import UsageError
 from affcli.lab.filming import FRAME_RATE, Reel
 from affcli.lab.learning_run import LearningRun
-from affcli.lab.run_parts import require_world_version, settings_of, world_of
+from affcli.lab.run_parts import require_shape, require_world_version, settings_of, world_of
 from affcli.lab.trials import WithEnd, run_trial
 from affcli.store import Store
 
@@ -82,7 +82,8 @@ def replay_trial(store: Store, trial_id: int) -> Replay:
     trial = store.trials.trial(trial_id)
     spec, learned = trial.spec, trial.learned
     require_world_version(spec.world)
-    require_shape(trial)
+    for tool in (learned.held, spec.held):
+        require_shape(tool, f"trial {trial_id}: ")
     if spec.counters is Counters.STORED:
         table, ids = store.trials.table_before(trial_id)
     else:
@@ -115,16 +116,6 @@ def replay_trial(store: Store, trial_id: int) -> Replay:
         *(trial_id, trial.run_id, spec, settings_of(learned).workspace),
         *(opening, tuple(steps), end, differences),
     )
-
-
-def require_shape(trial: TrialInfo) -> None:
-    """Make sure that it is known what the tools of a trial look like; DatabaseError otherwise."""
-    for tool in (trial.learned.held, trial.spec.held):
-        if not tool.parts:
-            raise DatabaseError(
-                f"trial {trial.id}: this affcli does not know what a {tool.name} looks like; "
-                f"{registry.REMEDY}"
-            )
 
 
 def _require_replays(world: World) -> None:

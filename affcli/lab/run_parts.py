@@ -14,7 +14,7 @@ from affcli.core.specs import LearningSpec
 from affcli.core.task import Task
 from affcli.core.tool import Tool
 from affcli.core.world import World
-from affcli.errors import BadInputError, DatabaseError
+from affcli.errors import BadInputError, DatabaseError, one_line
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,15 +121,21 @@ def world_of(learned: LearningSpec, *, again: bool = False) -> World:
     """
     settings, made = settings_of(learned), learned.world
     require_known(settings)
-    if not learned.held.parts:
-        raise DatabaseError(
-            f"this affcli does not know what a {learned.tool} looks like; {registry.REMEDY}"
-        )
+    require_shape(learned.held)
     registry.recorded("bindings", Component(learned.binding.name))
     if again:
         require_world_version(made)
     here = replace(made, version=registry.recorded("worlds", made).version)
     return registry.world(here, settings)
+
+
+def require_shape(tool: Tool, where: str = "") -> None:
+    """Make sure that it is known what a tool looks like; DatabaseError otherwise."""
+    if not tool.parts:
+        name = one_line(tool.name, 40)
+        raise DatabaseError(
+            f"{where}this affcli does not know what a {name} looks like; {registry.REMEDY}"
+        )
 
 
 def tasks_of(world: World, task_set: str) -> tuple[Task, ...]:

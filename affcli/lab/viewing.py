@@ -15,7 +15,8 @@ from affcli.core.records import StepScene
 from affcli.core.scene import Scene
 from affcli.core.tool import PUCK_COLOR, hold_of
 from affcli.lab.filming import FRAME_RATE, Reel
-from affcli.lab.run_parts import settings_of
+from affcli.lab.photographs import SHOWN, eye_at
+from affcli.lab.run_parts import require_shape, settings_of
 from affcli.simulation.robot import SimulatedRobot
 from affcli.simulation.sensing import eye_of
 from affcli.simulation.table import Table
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
     from affcli.perception.rendering import Picture
     from affcli.perception.segmentation import Segmentation
 
-SHOWN = "t-hook"
-"""The tool in a picture that is of no run."""
 VIEW = 3
 """First word of the key of the random stream that decides the noise in a picture made to be looked
 at: it is not that of the picture the robot saw then."""
@@ -151,6 +150,7 @@ def scenes_of_step(step: StepScene) -> list[Scene]:
 def _scene(step: StepScene) -> Scene:
     """Return the scene in which a step began."""
     believed = step.learned.held
+    require_shape(step.held)
     return Scene(
         Pose(*step.attractor_start),
         PUCK_COLOR,
@@ -158,12 +158,6 @@ def _scene(step: StepScene) -> Scene:
         step.held.painted(believed.color).held(hold_of(step.binding)),
         step.goal,
     )
-
-
-def eye_at(settings: Settings, seed: int) -> "Eye":
-    """Return a camera of these settings, and of robot 0, which may see the tool that is shown."""
-    tool = registry.tool(SHOWN, settings.workspace.tools)
-    return eye_of(settings.camera, settings.workspace, tool, seed, 0)
 
 
 def _eye_of(step: StepScene) -> "Eye":

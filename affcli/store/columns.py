@@ -65,5 +65,12 @@ COLUMNS: dict[str, tuple[str, ...]] = {
     ),
 }
 """The columns of each table but for `id`, in the order of the rows that are written."""
+JSON_COLUMNS = frozenset(
+    {
+        *("settings", "versions", "repertoire", "binding_params", "exploratory_params"),
+        *("checkpoint", "calibration", "reasons", "last_reasons", "definition"),
+    }
+)
+"""Columns that hold JSON."""
 NUMBERED = ("session", "learning_run", "affordance", "trial", "verification")
 """The tables whose rows have an `id`."""

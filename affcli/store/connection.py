@@ -9,10 +9,13 @@ from typing import Any
 import sqlalchemy as sa
 from sqlalchemy.dialects import sqlite
 
-from affcli.errors import UsageError
-from affcli.store.columns import COLUMNS
+from affcli.errors import DatabaseError, UsageError, one_line
+from affcli.store.columns import COLUMNS, JSON_COLUMNS
 from affcli.store.faults import faults_named
 from affcli.store.lock_retry import retried
+
+LARGEST = 1e9
+"""No length, angle or time of this laboratory is larger; ten thousand hours are 3.6e7 s."""
 
 
 class Database:
@@ -122,10 +125,41 @@ def insert_one(
 
 
 def mappings(connection: sa.Connection, wanted: sa.Select[Any]) -> list[dict[str, Any]]:
-    """Return all rows of one query, each by the names of its columns."""
+    """Return all rows of one query as `tuples` does, each by the names of its columns."""
+    names, rows = _checked_rows(connection, wanted)
+    return [dict(zip(names, row, strict=True)) for row in rows]
+
+
+def tuples(connection: sa.Connection, wanted: sa.Select[Any]) -> list[tuple[Any, ...]]:
+    """Return all rows of one query.
+
+    Text that is more than text on a terminal or a page is escaped.
+
+    Raises:
+        DatabaseError: a number is none that a robot has to do with.
+    """
+    return list(_checked_rows(connection, wanted)[1])
+
+
+def _checked_rows(
+    connection: sa.Connection, wanted: sa.Select[Any]
+) -> tuple[list[str], Iterator[tuple[Any, ...]]]:
+    """Return the names of the columns, and the rows one by one."""
     result = connection.execute(wanted)
     names = list(result.keys())
-    return [dict(zip(names, row, strict=True)) for row in result]
+    return names, (tuple(map(_checked, names, row)) for row in result)
+
+
+def _checked(name: str, value: Any) -> Any:
+    """Return a stored value: names are printable, numbers finite and no larger than `LARGEST`."""
+    if isinstance(value, float) and not -LARGEST <= value <= LARGEST:
+        raise DatabaseError(
+            f"a record's {name} is {value:g}, a value that affcli did not write; restore a copy of "
+            "the database"
+        )
+    if isinstance(value, str) and not value.isprintable() and name not in JSON_COLUMNS:
+        return one_line(value, len(value))
+    return value
 
 
 def numbered(

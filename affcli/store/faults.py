@@ -47,6 +47,9 @@ REMEDIES = {
 NO_TEXT = "Could not decode to UTF-8"
 """What Python's driver says, without a code, of text that is not in UTF-8."""
 
+NO_COLUMN = ("no such column: ", "has no column named ")
+"""What SQLite says, with the code of any mistake, of a table that was changed."""
+
 
 def result_code(error: BaseException) -> int:
     """Return SQLite's result code of an error of sqlite3 or SQLAlchemy, 0 of all others."""
@@ -70,20 +73,24 @@ def faults_named(path: Path, waited: float) -> Iterator[None]:
     try:
         yield
     except Exception as error:
-        code = result_code(error)
+        code, said = result_code(error), str(getattr(error, "orig", error))
         if is_busy(error):
             raise DatabaseError(
                 f"{one_line(path)}: locked for more than {waited:g} s by {lock_holder(path)}; "
                 "wait until it is done, then run the command again"
             ) from error
-        if str(getattr(error, "orig", error)).startswith(NO_TEXT):
+        if said.startswith(NO_TEXT):
             raise DatabaseError(
                 f"{one_line(path)}: holds text that is none and that affcli did not write; restore "
                 "a copy of the file"
             ) from error
+        if any(words in said for words in NO_COLUMN):
+            raise DatabaseError(
+                f"{one_line(path)}: damaged, {said}; restore a copy of the file"
+            ) from error
         remedy = REMEDIES.get(code) or REMEDIES.get(code & PRIMARY)
         if remedy is CLASH:
-            remedy = f"{one_line(getattr(error, 'orig', error))}: {CLASH}"
+            remedy = f"{one_line(said)}: {CLASH}"
         if remedy is not None:
             raise DatabaseError(f"{one_line(path)}: {remedy}") from error
         raise

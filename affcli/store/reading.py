@@ -12,6 +12,7 @@ from affcli.core.behavior import BehaviorCall, BehaviorName, Repertoire, reperto
 from affcli.core.choice import Reason, Reasons
 from affcli.core.geometry import Point, Pose
 from affcli.core.identity import Component
+from affcli.core.limits import LONGEST_HOURS, MOST_BEHAVIORS, MOST_ROBOTS
 from affcli.core.observation import Movement, Observation, SensorKind
 from affcli.core.records import (
     LearningRunInfo,
@@ -142,6 +143,13 @@ def stored_row(row: Columns) -> StoredRow:
         return StoredRow(row["id"], row["learning_run_id"], row["tool"], affordance(row))
 
 
+def _at_most(value: float | None, most: float) -> Any:
+    """Return a number that is not more than `most`; ValueError otherwise."""
+    if value is not None and value > most:
+        raise ValueError(value)
+    return value
+
+
 def _parts(row: Columns) -> dict[str, Any]:
     """Return the parts that the specs of sessions and learning runs share."""
     dict(json.loads(row["settings"]))  # a mapping, whatever its keys
@@ -161,8 +169,8 @@ def learning_spec(row: Columns) -> LearningSpec:
     return LearningSpec(
         held=tool(row["tool"], row["definition"]),
         robot=row["robot"],
-        hours=row["hours"],
-        behaviors=row["behaviors_limit"],
+        hours=_at_most(row["hours"], LONGEST_HOURS),
+        behaviors=_at_most(row["behaviors_limit"], MOST_BEHAVIORS),
         **_parts(row),
     )
 
@@ -187,7 +195,7 @@ def session(row: Columns) -> SessionInfo:
     with reading_what_was_written(f"session {row['id']}"):
         spec = SessionSpec(
             kind=row["kind"],
-            robots=row["robots"],
+            robots=_at_most(row["robots"], MOST_ROBOTS),
             planner=component(row["planner"]),
             task_set=row["task_set"],
             **_parts(row),

@@ -19,7 +19,7 @@ from affcli.core.results import (
 )
 from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome
-from affcli.store.connection import Database
+from affcli.store.connection import Database, tuples
 from affcli.store.reading import behavior_call, reading_what_was_written
 from affcli.store.tables import affordance, behavior, learning_run, session, step, trial
 
@@ -183,7 +183,7 @@ class Results:
             wanted = wanted.where(b.learning_run_id.in_(of_session))
         wanted = wanted.group_by(b.learning_run_id, number).order_by(b.learning_run_id, number)
         with self.database.reading() as connection:
-            rows = connection.execute(wanted).all()
+            rows = tuples(connection, wanted)
         with reading_what_was_written("a behavior"):
             return tuple(LearningInterval(*map(int, row)) for row in rows)
 
@@ -197,7 +197,7 @@ class Results:
             .order_by(t.tool, t.shape)
         )
         with self.database.reading() as connection:
-            return tuple((tool, shape) for tool, shape in connection.execute(wanted))
+            return tuple((tool, shape) for tool, shape in tuples(connection, wanted))
 
     def trial_groups(
         self, session_id: int, tool: str, shape: str, side: float, *, by_robot: bool
@@ -257,14 +257,14 @@ class Results:
             .order_by(key, s.number)
         )
         with self.database.reading() as connection:
-            groups = [tuple(row) for row in connection.execute(counts)]
-            steps = [tuple(row) for row in connection.execute(sums)]
+            groups = tuples(connection, counts)
+            steps = tuples(connection, sums)
         return tuple(_groups(groups, steps))
 
     def _all(self, wanted: sa.Select[Any]) -> list[tuple[Any, ...]]:
         """Return all rows of a query."""
         with self.database.reading() as connection:
-            return [tuple(row) for row in connection.execute(wanted)]
+            return tuples(connection, wanted)
 
 
 def _trial_result(row: dict[str, Any]) -> TrialResult:

