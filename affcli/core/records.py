@@ -102,7 +102,7 @@ class TrialInfo:
 
     Args:
         id: its number in the store.
-        session_id, session_kind: the command it is part of.
+        session_id: the command it is part of.
         run_id: the learning run whose table it used.
         spec: what it is a function of, beside that table.
         learned: what the learning run is a function of.
@@ -115,7 +115,6 @@ class TrialInfo:
 
     id: int
     session_id: int
-    session_kind: str
     run_id: int
     spec: TrialSpec
     learned: LearningSpec

@@ -222,7 +222,6 @@ def trial(row: Columns, learned: Mapping[int, LearningSpec]) -> TrialInfo:
         return TrialInfo(
             id=row["id"],
             session_id=row["session_id"],
-            session_kind=row["kind"],
             run_id=row["learning_run_id"],
             spec=spec,
             learned=learned[row["learning_run_id"]],

@@ -17,36 +17,47 @@ from affcli.analysis.comparison import Beside, Results, results_of_many, results
 from affcli.analysis.paper import BROKEN as IN_PAPER
 from affcli.analysis.paper import EXTENSION_OF_REACH, GOALS, TOOLS, TOTAL
 from affcli.analysis.statistics import Spread
-from affcli.core.results import TrialResult
+from affcli.core.identity import Component
+from affcli.core.records import TrialInfo
 from affcli.core.specs import Protocol
+from affcli.core.task import Task
+from affcli.core.tool import ToolName
 from affcli.core.trial import Outcome
 from affcli.report.figures.canvas import INK, SKY, TWO_COLUMNS, VERMILION, encoded
 from affcli.report.figures.results import results_figure
 from affcli.report.results import results_title
+from tests.factories import learning_spec, trial_spec
 from tests.report.hand_made import FOUR_ROBOTS, MANY_ROBOTS, TASK_SET, session_of
 
 
 def result(
     tool: str, goal: str, start: int, *, solved: bool = True, shape: str | None = None, **more: Any
-) -> TrialResult:
+) -> TrialInfo:
     """Return how a trial of run 1 ended."""
+    learned = learning_spec()
+    usual = trial_spec(learned)
+    goals = replace(usual.task.goal, name=goal)
+    spec = replace(
+        usual,
+        protocol=Protocol.TOOL_ADAPTATION if shape else Protocol.EXTENSION_OF_REACH,
+        tool=tool,
+        held=replace(usual.held, name=ToolName(shape or tool)),
+        task=Task(more.pop("task_set", TASK_SET), goals, str(start), usual.task.start),
+        planner=Component.parse(more.pop("planner", "nested-query")),
+        sensor=more.pop("sensor", "noisy"),
+    )
     which: dict[str, Any] = {
         "id": 1,
-        "session_kind": "break-tool" if shape else "solve",
         "session_id": 1,
         "run_id": 1,
-        "robot": 0,
-        "protocol": Protocol.TOOL_ADAPTATION if shape else Protocol.EXTENSION_OF_REACH,
-        "task_set": TASK_SET,
-        "planner": "nested-query",
-        "sensor": "noisy",
+        "learned": learned,
+        "versions": {},
         "outcome": Outcome.SOLVED if solved else Outcome.STEP_LIMIT,
         "steps": 3,
         "robot_seconds": 20.0,
+        "last_reasons": None,
     }
-    return TrialResult(
-        **(which | more), tool=tool, shape=shape or tool, goal=goal, start=str(start)
-    )
+    return TrialInfo(**(which | more), spec=spec)
 
 
 SOLVED = [result(tool, goal, start) for tool, goal in EXTENSION_OF_REACH for start in range(1, 5)]
@@ -57,7 +68,7 @@ BROKEN = [
 ]
 
 
-def single(whole: list[TrialResult], broken: list[TrialResult]) -> Results:
+def single(whole: list[TrialInfo], broken: list[TrialInfo]) -> Results:
     found = results_of_single(whole, broken)
     assert found is not None
     return found
