@@ -17,47 +17,25 @@ from affcli.analysis.comparison import Beside, Results, results_of_many, results
 from affcli.analysis.paper import BROKEN as IN_PAPER
 from affcli.analysis.paper import EXTENSION_OF_REACH, GOALS, TOOLS, TOTAL
 from affcli.analysis.statistics import Spread
-from affcli.core.identity import Component
 from affcli.core.records import TrialInfo
 from affcli.core.specs import Protocol
-from affcli.core.task import Task
-from affcli.core.tool import ToolName
 from affcli.core.trial import Outcome
 from affcli.report.figures.canvas import INK, SKY, TWO_COLUMNS, VERMILION, encoded
 from affcli.report.figures.results import results_figure
 from affcli.report.results import results_title
-from tests.factories import learning_spec, trial_spec
-from tests.report.hand_made import FOUR_ROBOTS, MANY_ROBOTS, TASK_SET, session_of
+from tests.report.hand_made import FOUR_ROBOTS, MANY_ROBOTS, RUNS, session_of, trial_info
 
 
 def result(
     tool: str, goal: str, start: int, *, solved: bool = True, shape: str | None = None, **more: Any
 ) -> TrialInfo:
     """Return how a trial of run 1 ended."""
-    learned = learning_spec()
-    usual = trial_spec(learned)
-    goals = replace(usual.task.goal, name=goal)
-    spec = replace(
-        usual,
-        protocol=Protocol.TOOL_ADAPTATION if shape else Protocol.EXTENSION_OF_REACH,
-        tool=tool,
-        held=replace(usual.held, name=ToolName(shape or tool)),
-        task=Task(more.pop("task_set", TASK_SET), goals, str(start), usual.task.start),
-        planner=Component.parse(more.pop("planner", "nested-query")),
-        sensor=more.pop("sensor", "noisy"),
-    )
-    which: dict[str, Any] = {
-        "id": 1,
-        "session_id": 1,
-        "run_id": 1,
-        "learned": learned,
-        "versions": {},
+    usual: dict[str, Any] = {
+        "shape": shape or tool,
+        "protocol": Protocol.TOOL_ADAPTATION if shape else Protocol.EXTENSION_OF_REACH,
         "outcome": Outcome.SOLVED if solved else Outcome.STEP_LIMIT,
-        "steps": 3,
-        "robot_seconds": 20.0,
-        "last_reasons": None,
     }
-    return TrialInfo(**(which | more), spec=spec)
+    return trial_info(1, RUNS[0], tool, goal, str(start), **(usual | more))
 
 
 SOLVED = [result(tool, goal, start) for tool, goal in EXTENSION_OF_REACH for start in range(1, 5)]
