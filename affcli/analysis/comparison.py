@@ -15,10 +15,12 @@ from affcli.analysis.paper import (
 )
 from affcli.analysis.reproduction import Reproduction, Solved
 from affcli.analysis.statistics import ENOUGH_ROBOTS, Spread
-from affcli.core.records import SessionInfo
-from affcli.core.results import TrialResult
+from affcli.core.records import SessionInfo, TrialInfo
 from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome
+
+UNCOUNTED = (None, Outcome.INVALID)
+"""Trials that were interrupted, or whose simulation failed, tell nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +110,7 @@ def _sum(cells: Collection[Beside]) -> Beside | None:
 
 
 def results_of_single(
-    solving: Iterable[TrialResult], breaking: Iterable[TrialResult]
+    solving: Iterable[TrialInfo], breaking: Iterable[TrialInfo]
 ) -> Results | None:
     """Return the results of robots that learned a tool each; of each start the latest trial counts.
 
@@ -119,8 +121,16 @@ def results_of_single(
     Returns:
         The results; None when none of the trials is the paper's.
     """
-    whole = {(t.tool, t.goal, t.start): t for t in _counting(solving) if papers_cell(t)}
-    broken = {(t.goal, t.start): t for t in _counting(breaking) if papers_break(t)}
+    whole = {
+        (t.spec.tool, t.spec.goal, t.spec.start): t
+        for t in solving
+        if t.outcome not in UNCOUNTED and papers_cell(t.spec)
+    }
+    broken = {
+        (t.spec.goal, t.spec.start): t
+        for t in breaking
+        if t.outcome not in UNCOUNTED and papers_break(t.spec)
+    }
     if not whole:
         return None
     tried: dict[tuple[str, str], list[bool]] = {cell: [] for cell in EXTENSION_OF_REACH}
@@ -133,17 +143,12 @@ def results_of_single(
     all_tried = all(cell.tried == STARTS for cell in cells.values())
     solved = sum(sum(cell.counts) for cell in cells.values())
     solved_broken = sum(trial.outcome is Outcome.SOLVED for trial in broken.values())
-    runs = {
-        sensor: sorted({trial.run_id for trial in whole.values() if trial.sensor == sensor})
-        for sensor in sorted({trial.sensor for trial in whole.values()})
+    runs: dict[str, list[int]] = {
+        sensor: sorted({trial.run_id for trial in whole.values() if trial.spec.sensor == sensor})
+        for sensor in sorted({trial.spec.sensor for trial in whole.values()})
     }
     return Results(
         *(None, 1, runs, cells),
         Beside(TOTAL, [solved], TRIALS) if all_tried else None,
         Beside(BROKEN, [solved_broken], len(broken)) if len(broken) == BROKEN_TRIALS else None,
     )
-
-
-def _counting(trials: Iterable[TrialResult]) -> Iterable[TrialResult]:
-    """Return the trials that count: a simulation that failed tells nothing."""
-    return (trial for trial in trials if trial.outcome is not Outcome.INVALID)

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from affcli.analysis.paper import EXTENSION_OF_REACH, other_parts, papers_break, papers_cell
 from affcli.analysis.reproduction import Reproduction
-from affcli.core.records import LearningRunInfo, SessionInfo
-from affcli.core.results import BehaviorGroup, RowUse, TrialResult
+from affcli.core.records import LearningRunInfo, SessionInfo, TrialInfo
+from affcli.core.results import BehaviorGroup
 from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome
 
@@ -59,16 +59,15 @@ class ProtocolCounts:
     rows_excluded: int
 
     @classmethod
-    def of(cls, ended: Sequence[TrialResult], uses: Iterable[RowUse]) -> "ProtocolCounts":
-        """Count the trials that ended, and what they made of rows."""
-        solved = [trial.steps for trial in ended if trial.outcome is Outcome.SOLVED]
-        used = list(uses)
+    def of(cls, ended: Sequence[TrialInfo], losses: tuple[int, int]) -> "ProtocolCounts":
+        """Count the trials that ended; `losses` as `store.results.Results.losses` gives them."""
+        solved = [trial.steps or 0 for trial in ended if trial.outcome is Outcome.SOLVED]
         return cls(
             trials=len(ended),
             solved=len(solved),
             mean_steps=sum(solved) / len(solved) if solved else None,
-            tries_on_lost=sum(use.tries for use in used if use.lost),
-            rows_excluded=sum(use.deaths > 0 for use in used),
+            tries_on_lost=losses[0],
+            rows_excluded=losses[1],
         )
 
 
@@ -115,9 +114,7 @@ class Overview:
     reproductions: Sequence[Reproduction]
 
 
-def goal_counts(
-    results: Iterable[TrialResult], runs: Iterable[LearningRunInfo]
-) -> list[GoalCounts]:
+def goal_counts(results: Iterable[TrialInfo], runs: Iterable[LearningRunInfo]) -> list[GoalCounts]:
     """Count successes by learning run, tool, sensor, planner and task set.
 
     Args:
@@ -127,33 +124,37 @@ def goal_counts(
     as_the_paper = {run.id for run in runs if not other_parts(run.spec)}
     counts: dict[tuple[SolvedBy, bool], dict[str, tuple[int, int]]] = {}
     for trial in results:
-        if trial.outcome is Outcome.INVALID:
+        if trial.outcome in (None, Outcome.INVALID):
             continue
-        by = SolvedBy(trial.run_id, trial.tool, trial.sensor, trial.planner, trial.task_set)
-        papers = trial.run_id in as_the_paper and papers_cell(trial)
+        spec = trial.spec
+        by = SolvedBy(trial.run_id, spec.tool, spec.sensor, str(spec.planner), spec.task_set)
+        papers = trial.run_id in as_the_paper and papers_cell(spec)
         goals = counts.setdefault((by, papers), {})
-        solved, tried = goals.get(trial.goal, (0, 0))
-        goals[trial.goal] = solved + (trial.outcome is Outcome.SOLVED), tried + 1
+        solved, tried = goals.get(spec.goal, (0, 0))
+        goals[spec.goal] = solved + (trial.outcome is Outcome.SOLVED), tried + 1
     return [GoalCounts(by, papers, goals) for (by, papers), goals in counts.items()]
 
 
 def breaking_of(
     session: SessionInfo,
-    results: Sequence[TrialResult],
-    uses: Mapping[Protocol, Iterable[RowUse]],
+    results: Sequence[TrialInfo],
+    losses: Mapping[Protocol, tuple[int, int]],
 ) -> Breaking | None:
     """Return the counts of one ``break-tool`` session; None when no broken tool was tried in it."""
-    adapting = [r for r in results if r.protocol is Protocol.TOOL_ADAPTATION]
+    of = {
+        protocol: [t for t in results if t.spec.protocol is protocol and t.outcome]
+        for protocol in Protocol
+    }
+    adapting = [trial.spec for trial in of[Protocol.TOOL_ADAPTATION]]
     if not adapting:
         return None
     counts = {
-        protocol: ProtocolCounts.of([r for r in results if r.protocol is protocol], of_protocol)
-        for protocol, of_protocol in uses.items()
+        protocol: ProtocolCounts.of(ended, losses[protocol]) for protocol, ended in of.items()
     }
     first = adapting[0]
     return Breaking(
-        *(session.id, first.run_id, session.spec.seed, first.tool, first.shape),
-        *(first.sensor, first.planner),
+        *(session.id, results[0].run_id, session.spec.seed, first.tool, first.shape),
+        *(first.sensor, str(first.planner)),
         papers=not other_parts(session.spec) and all(map(papers_break, adapting)),
         broken=counts[Protocol.TOOL_ADAPTATION],
         whole=counts[Protocol.EXTENSION_OF_REACH],

@@ -5,7 +5,7 @@ from types import MappingProxyType
 
 from affcli.core.behavior import GRASP
 from affcli.core.identity import Component
-from affcli.core.results import SuccessCount, TrialResult
+from affcli.core.results import SuccessCount
 from affcli.core.specs import (
     BROKEN_SHAPE,
     BROKEN_TOOL,
@@ -53,22 +53,22 @@ _HANDLE_BELOW_GRASP = 1.0
 """Where on the handle the paper's grasp is unless the settings say otherwise (in)."""
 
 
-def papers_cell(of: SuccessCount | TrialResult) -> bool:
+def papers_cell(of: SuccessCount | TrialSpec) -> bool:
     """Tell whether trials are among the paper's 80: its tool, goal, task and planner (§7.1)."""
     return (
         of.protocol is Protocol.EXTENSION_OF_REACH
         and (of.tool, of.goal) in EXTENSION_OF_REACH
-        and _papers_trials(of)
+        and (of.task_set, str(of.planner)) == (TASK_SET, PLANNER)
     )
 
 
-def papers_break(of: SuccessCount | TrialResult) -> bool:
+def papers_break(of: SuccessCount | TrialSpec) -> bool:
     """Tell whether trials are among the paper's 16 with the T-hook that became an L-hook (§7.2)."""
     return (
         of.protocol is Protocol.TOOL_ADAPTATION
         and (of.tool, of.shape) == (BROKEN_TOOL, BROKEN_SHAPE)
         and of.goal in GOALS
-        and _papers_trials(of)
+        and (of.task_set, str(of.planner)) == (TASK_SET, PLANNER)
     )
 
 
@@ -77,21 +77,12 @@ def papers_successes(spec: TrialSpec) -> int | None:
 
     None when it has none, or when the trial has another protocol, task set or planner.
     """
-    which = (spec.protocol, spec.task.task_set, str(spec.planner))
-    if which != (Protocol.EXTENSION_OF_REACH, TASK_SET, PLANNER):
-        return None
-    return EXTENSION_OF_REACH.get((spec.tool, spec.goal))
+    return EXTENSION_OF_REACH[spec.tool, spec.goal] if papers_cell(spec) else None
 
 
 def papers_breaking(spec: TrialSpec, learned: LearningSpec) -> bool:
     """Tell whether a trial with a broken tool, and the learning before, are the paper's (§7.2)."""
-    which = (spec.tool, spec.shape, spec.task.task_set, str(spec.planner))
-    return which == (BROKEN_TOOL, BROKEN_SHAPE, TASK_SET, PLANNER) and not other_parts(learned)
-
-
-def _papers_trials(of: SuccessCount | TrialResult) -> bool:
-    """Tell whether tasks and planner are the paper's."""
-    return (of.task_set, of.planner) == (TASK_SET, PLANNER)
+    return papers_break(spec) and not other_parts(learned)
 
 
 def other_parts(spec: LearningSpec | SessionSpec) -> dict[str, str]:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from affcli.analysis.paper import EXTENSION_OF_REACH, other_parts, papers_break, papers_cell
 from affcli.core.records import SessionInfo
-from affcli.core.results import OutcomeCount, SuccessCount
+from affcli.core.results import SuccessCount
 from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome
 
@@ -65,7 +65,7 @@ class Reproduction:
         session: SessionInfo,
         robots: int,
         counts: Iterable[SuccessCount],
-        outcomes: Iterable[OutcomeCount],
+        outcomes: Mapping[Outcome, int],
         tries_on_lost: int,
     ) -> "Reproduction":
         """Sum up the trials of a session.
@@ -110,14 +110,11 @@ class Reproduction:
         return [sum(column) for column in zip(*self.cells.values(), strict=True)]
 
 
-def failures_in(outcomes: Iterable[OutcomeCount]) -> tuple[dict[str, int], int]:
+def failures_in(outcomes: Mapping[Outcome, int]) -> tuple[dict[str, int], int]:
     """Return how often each kind of failure occurred, the commonest first; and all trials."""
-    kinds: Counter[str] = Counter()
-    for count in outcomes:
-        kinds[count.outcome.value] += count.trials
-    trials = kinds.total()
-    del kinds[Outcome.SOLVED.value]
-    return dict(sorted(kinds.items(), key=lambda item: (-item[1], item[0]))), trials
+    kinds = {one.value: count for one, count in outcomes.items() if one is not Outcome.SOLVED}
+    ordered = sorted(kinds.items(), key=lambda item: (-item[1], item[0]))
+    return dict(ordered), sum(outcomes.values())
 
 
 def _solved(counts: Iterable[SuccessCount], robots: int) -> Solved:

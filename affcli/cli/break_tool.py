@@ -51,7 +51,7 @@ def break_tool(
             for number, trial, share in events:
                 numbers.append(number)
                 trials.append(trial)
-                bar.update(share, f"{len(trials)} trials")
+                bar(share, f"{len(trials)} trials")
     show_either(
         as_json=as_json,
         value=lambda: {"run": used.id, "trials": numbers, **broken_json(used, trials)},

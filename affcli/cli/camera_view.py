@@ -138,10 +138,9 @@ def _stored_scene(
     database: Path, trial: int | None, run: int | None, step: int
 ) -> "StepScene | None":
     """Return a step of a trial or a behavior of a run from the database; None for neither."""
-    if trial is not None:
-        with opened(database) as store:
+    if trial is None and run is None:
+        return None
+    with opened(database) as store:
+        if trial is not None:
             return store.trials.scene(trial, step)
-    if run is not None:
-        with opened(database) as store:
-            return store.learning.scene(run, step)
-    return None
+        return store.learning.scene(run or 0, step)

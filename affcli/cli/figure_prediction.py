@@ -2,10 +2,9 @@
 
 from affcli import lab
 from affcli.cli.database import learned_runs, opened, tool_or_default
-from affcli.cli.files import require_new, save
+from affcli.cli.figure_learned import check_out, save_figure
 from affcli.cli.options import (
     DEFAULT_DATABASE,
-    FIGURE_ENDINGS,
     Database,
     FigureOut,
     Force,
@@ -15,8 +14,7 @@ from affcli.cli.options import (
     Seed,
     TrialSensor,
 )
-from affcli.cli.terminal import progress, say
-from affcli.errors import one_line
+from affcli.cli.terminal import followed
 from affcli.report import figures
 
 
@@ -37,15 +35,11 @@ def prediction(
 
     The numbers are those of `affcli predict` with as many pushes.
     """
-    require_new(out, force=force, endings=FIGURE_ENDINGS)
+    check_out(out, force=force)
     with opened(database) as store:
         (used,) = learned_runs(store, tool_or_default(tool, run), database, run)
         spec = lab.predicting.prediction_spec(used, used.spec.held, seed, sensor, pushes)
-        done = []
-        with progress(f"pushing with the {spec.tool}", pushes) as bar:
-            for push in lab.predicting.predict(store, used, spec):
-                done.append(push)
-                bar.update(len(done), f"{len(done)} of {pushes} pushes")
+        doing = lab.predicting.predict(store, used, spec)
+        done = followed(doing, f"pushing with the {spec.tool}", pushes, "pushes")
     title = f"Run {used.id}, {spec.tool}"
-    save(out, figures.canvas.encoded(figures.prediction.prediction_figure(title, done), out.suffix))
-    say(f"{title}: {one_line(out)}")
+    save_figure(out, figures.prediction.prediction_figure(title, done), title)

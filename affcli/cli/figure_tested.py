@@ -94,8 +94,8 @@ def results(
             f"robots run affcli reproduce --robots {ENOUGH_ROBOTS}"
         )
     else:
-        note = _note(results_note(found))
-        say(f"results, session {found.session.id}: {results_title(found)}{note}: {one_line(out)}")
+        words = ", ".join(filter(None, (title, results_note(found))))
+        say(f"results, session {found.session.id}: {words}: {one_line(out)}")
 
 
 def adaptation(
@@ -113,13 +113,6 @@ def adaptation(
     check_out(out, force=force)
     with opened(database) as store:
         course = lab.adaptation.adaptation_in(store, session)
-    note = _note(course_note(course))
+    words = ", ".join(filter(None, (course_title(course), course_note(course))))
     figure = figures.adaptation.adaptation_figure(course)
-    save_figure(
-        out, figure, f"adaptation, session {course.session.id}: {course_title(course)}{note}"
-    )
-
-
-def _note(note: str) -> str:
-    """Return a note as it follows a title."""
-    return f", {note}" if note else ""
+    save_figure(out, figure, f"adaptation, session {course.session.id}: {words}")

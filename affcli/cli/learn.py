@@ -124,7 +124,7 @@ def _learn(store: "Store", spec: LearningSpec) -> "lab.learning.Learned":
         def update(info: LearningRunInfo) -> None:
             """Show the robot clock, behaviors, rows and resets."""
             done = info.robot_seconds if spec.hours is not None else info.behaviors
-            bar.update(min(done, goal), summary(info))
+            bar(min(done, goal), summary(info))
 
         learned = lab.learning.learn(store, spec, now, update)
     info = learned.info

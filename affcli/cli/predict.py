@@ -13,7 +13,7 @@ from affcli.cli.options import (
     Seed,
     TrialSensor,
 )
-from affcli.cli.terminal import progress, show_either
+from affcli.cli.terminal import followed, show_either
 from affcli.planning.prediction import RADIUS
 from affcli.report.prediction import prediction_json, prediction_tables
 
@@ -38,14 +38,17 @@ def predict(
         (used,) = learned_runs(store, tool_or_default(tool, run), database, run)
         held = lab.run_parts.tool_of(used.spec, shape or used.spec.tool)
         spec = lab.predicting.prediction_spec(used, held, seed, sensor, pushes)
-        done = []
-        with progress(f"pushing with the {held.name}", pushes) as bar:
-            for push in lab.predicting.predict(store, used, spec):
-                done.append(push)
-                bar.update(len(done), f"{len(done)} of {pushes} pushes")
-    about = {"run": used.id, "tool": spec.tool, "shape": spec.shape}
-    about |= {"sensor": spec.sensor, "seed": seed}
-    about |= {"pushes": pushes, "radius": RADIUS}
+        doing = lab.predicting.predict(store, used, spec)
+        done = followed(doing, f"pushing with the {held.name}", pushes, "pushes")
+    about = {
+        "run": used.id,
+        "tool": spec.tool,
+        "shape": spec.shape,
+        "sensor": spec.sensor,
+        "seed": seed,
+        "pushes": pushes,
+        "radius": RADIUS,
+    }
     show_either(
         as_json=as_json,
         value=lambda: {**about, "scores": prediction_json(done)},

@@ -167,9 +167,7 @@ def _film(replay: Replay, numbers: Sequence[int], speed: float, gif: Path) -> No
             f"a film of {count} pictures: at most {MOST_PICTURES}; give --steps A-B or more --speed"
         )
     with progress("filming", count) as bar:
-        film = lab.replaying.gif_of(
-            replay, numbers, speed, lambda n: bar.update(n, f"{n} pictures")
-        )
+        film = lab.replaying.gif_of(replay, numbers, speed, lambda n: bar(n, f"{n} pictures"))
     save(gif, film)
     which = f"step {numbers[0]}" if len(numbers) == 1 else f"steps {numbers[0]}-{numbers[-1]}"
     say(f"trial {replay.trial_id}, {which}: {one_line(gif)}")
@@ -224,7 +222,7 @@ def _replay_run(
     else:
         with progress(f"run {run}", last) as bar:
             for behavior in noted():
-                bar.update(behavior.record.step, f"behavior {behavior.record.step}")
+                bar(behavior.record.step, f"behavior {behavior.record.step}")
     if as_json:
         show_json({"run": run, "behaviors": done, **differences_json(differences)})
     say(f"run {run}: {verdict(done, differences, 'behavior', info.behaviors)}")
@@ -247,7 +245,7 @@ def _replay_all(store: "Store", *, as_json: bool) -> int:
             else:
                 if again.differences:
                     differing[trial.id] = verdict(len(again.steps), again.differences)
-            bar.update(number, f"{number} of {len(trials)} trials")
+            bar(number, f"{number} of {len(trials)} trials")
     otherwise = differing | not_replayed
     equal = len(trials) - len(otherwise)
     if as_json:

@@ -76,7 +76,7 @@ def _as_page(html: Path, robot: int | None, session: int | None, database: Path)
             store,
             robot,
             session,
-            lambda done, trials: bar.update(done / trials, f"{done} of {trials} trials"),
+            lambda done, trials: bar(done / trials, f"{done} of {trials} trials"),
         )
     # Names of files alone: the page may be sent to others.
     words = ["affcli", "report", "--db", database.name, "--html", html.name]

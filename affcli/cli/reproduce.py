@@ -79,7 +79,11 @@ def reproduce(
     if robots is None:
         robots = FEW_ROBOTS
     if workers is None:
-        workers = min(len(os.sched_getaffinity(0)), MOST_WORKERS) if _has_affinity() else 1
+        workers = (
+            min(len(os.sched_getaffinity(0)), MOST_WORKERS)
+            if hasattr(os, "sched_getaffinity")
+            else 1
+        )
 
     settings = with_sensor(load_settings(config, changes or ()), sensor)
     chosen = lab.run_parts.RunParts.chosen(
@@ -98,7 +102,7 @@ def reproduce(
         session = next(events)
         with progress("reproducing", robots) as bar:
             for saved in events:
-                bar.update(saved, f"{saved} of {robots} robots")
+                bar(saved, f"{saved} of {robots} robots")
         result = lab.overview.reproduction_of(store, session, robots)
     say(f"session {session}: {robots} robots, seed {what.seed}, saved in {database}")
     show_either(
@@ -106,8 +110,3 @@ def reproduce(
         value=lambda: reproduction_json(result),
         tables=lambda: reproduction_tables(result),
     )
-
-
-def _has_affinity() -> bool:
-    """Tell whether the system says which cores this process may use."""
-    return hasattr(os, "sched_getaffinity")

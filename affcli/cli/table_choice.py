@@ -1,7 +1,6 @@
 """Which rows of the affordance tables a command is about: its options, and their checks."""
 
 import re
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -75,78 +74,11 @@ _BOUND = re.compile(rf"(<=|>=|<|>)\s*{_NUMBER}", re.ASCII)
 _BETWEEN = re.compile(rf"{_NUMBER}\s*\.\.\s*{_NUMBER}", re.ASCII)
 
 
-@dataclass(frozen=True, slots=True)
-class Choice:
-    """Which rows were asked for.
-
-    Args:
-        tool: of this tool; of all if None.
-        run: of this learning run; of the latest finished one of each tool if None.
-        all_runs: of every learning run.
-        behavior: of the behavior of this name, with its parameters or without, whatever they were;
-            of all if None.
-        probability: bounds of the replication probability.
-        region: with the attractor nearest to this part of the tool; to any if None.
-        limit: no more than so many; all if None.
-    """
-
-    tool: str | None
-    run: int | None
-    all_runs: bool
-    behavior: str | None
-    probability: "tuple[tuple[Comparison, float], ...]"
-    region: str | None
-    limit: int | None
-
-    def filter_for(self, runs: "Sequence[LearningRunInfo]") -> "RowFilter":
-        """Return what the database can be asked for; it knows no regions.
-
-        Raises:
-            UsageError: none of the runs has the behavior; the message has the nearest.
-        """
-        return RowFilter(
-            runs=None if self.all_runs else tuple(run.id for run in runs),
-            tool=self.tool,
-            behavior=None if self.behavior is None else _behavior(self.behavior, runs),
-            probability=self.probability,
-            limit=self.limit,
-        )
-
-
 def _behavior(text: str, runs: "Sequence[LearningRunInfo]") -> BehaviorCall:
     """Return the exploratory behavior of this name that learning runs have."""
     calls = dict.fromkeys(one.call for run in runs for one in run.spec.repertoire)
     known = {str(call): call for named in calls for call in (BehaviorCall(named.name, ()), named)}
     return known[one_of("behavior", text, known)]
-
-
-def checked_choice(
-    *,
-    tool: str | None,
-    run: int | None,
-    all_runs: bool,
-    behavior: str | None,
-    probability: str | None,
-    region: str | None,
-    limit: int | None,
-) -> Choice:
-    """Return what was asked for.
-
-    Raises:
-        UsageError: a run beside --all-runs.
-        BadInputError: a probability that cannot be read.
-    """
-    if run is not None and all_runs:
-        raise UsageError("give --run ID or --all-runs, not both")
-    return Choice(
-        tool=tool,
-        run=run,
-        all_runs=all_runs,
-        behavior=behavior,
-        probability=() if probability is None else checked_probability(probability),
-        region=region,
-        limit=limit,
-    )
 
 
 def checked_probability(text: str) -> "tuple[tuple[Comparison, float], ...]":
@@ -170,42 +102,69 @@ def checked_probability(text: str) -> "tuple[tuple[Comparison, float], ...]":
     return bounds
 
 
-def chosen_runs(store: "Store", choice: Choice, database: Path) -> "Sequence[LearningRunInfo]":
-    """Return the learning runs whose rows are meant.
+def chosen_rows(
+    store: "Store",
+    database: Path,
+    *,
+    tool: str | None,
+    run: int | None,
+    all_runs: bool,
+    behavior: str | None,
+    probability: str | None,
+    region: str | None,
+    limit: int | None,
+) -> "tuple[Sequence[LearningRunInfo], RowFilter]":
+    """Return the learning runs whose rows are meant, and what the database can be asked for.
+
+    It knows no regions. The run that was named, all runs, or the latest finished one of each tool;
+    a behavior with its parameters, or without, whatever they were.
 
     Raises:
-        UsageError: there are none; the run is of another tool; or no tool of them has the region.
+        UsageError: there are no such runs; the run is of another tool; no tool of them has the
+            region; none of them has the behavior, and the message has the nearest.
+        BadInputError: a probability that cannot be read.
     """
-    runs = _runs(store, choice, database)
-    tools = dict.fromkeys(run.spec.tool for run in runs)
-    parts = dict.fromkeys(part.name for run in runs for part in run.spec.held.parts)
-    if choice.region is not None and choice.region not in parts:
+    if run is not None and all_runs:
+        raise UsageError("give --run ID or --all-runs, not both")
+    bounds = () if probability is None else checked_probability(probability)
+    runs = _runs(store, database, tool, run, all_runs=all_runs)
+    tools = dict.fromkeys(one.spec.tool for one in runs)
+    parts = dict.fromkeys(part.name for one in runs for part in one.spec.held.parts)
+    if region is not None and region not in parts:
         raise UsageError(
-            f"no region {one_line(choice.region, 60)!r} of the {_listed(tools)}; the parts are "
+            f"no region {one_line(region, 60)!r} of the {_listed(tools)}; the parts are "
             f"{_listed(parts)}"
         )
-    return runs
+    return runs, RowFilter(
+        runs=None if all_runs else tuple(one.id for one in runs),
+        tool=tool,
+        behavior=None if behavior is None else _behavior(behavior, runs),
+        probability=bounds,
+        limit=limit,
+    )
 
 
-def _runs(store: "Store", choice: Choice, database: Path) -> "Sequence[LearningRunInfo]":
+def _runs(
+    store: "Store", database: Path, tool: str | None, run: int | None, *, all_runs: bool
+) -> "Sequence[LearningRunInfo]":
     """Return the run that was named, all runs, or the latest finished one of each tool."""
-    if choice.run is not None:
-        run = store.learning.run(choice.run)
-        if choice.tool not in (None, run.spec.tool):
+    if run is not None:
+        chosen = store.learning.run(run)
+        if tool not in (None, chosen.spec.tool):
             raise UsageError(
-                f"run {run.id} is of the {one_line(run.spec.tool, 60)}, not of the {choice.tool}; "
+                f"run {run} is of the {one_line(chosen.spec.tool, 60)}, not of the {tool}; "
                 "leave out --tool"
             )
-        return [run]
-    runs = [run for run in lab.table.every_run(store) if choice.tool in (None, run.spec.tool)]
-    if choice.all_runs and runs:
+        return [chosen]
+    runs = [one for one in lab.table.every_run(store) if tool in (None, one.spec.tool)]
+    if all_runs and runs:
         return runs
-    if runs and all(run.session_id is not None for run in runs):
+    if runs and all(one.session_id is not None for one in runs):
         raise UsageError(
-            f"nothing learned with the {choice.tool or 'tools'} in {one_line(database)} but by "
+            f"nothing learned with the {tool or 'tools'} in {one_line(database)} but by "
             "robots of a reproduction; give --run ID or --all-runs"
         )
-    return learned_runs(store, choice.tool, database)
+    return learned_runs(store, tool, database)
 
 
 def _listed(names: "dict[str, None]") -> str:

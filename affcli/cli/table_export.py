@@ -19,8 +19,7 @@ from affcli.cli.table_choice import (
     Region,
     Run,
     Tool,
-    checked_choice,
-    chosen_runs,
+    chosen_rows,
 )
 from affcli.cli.terminal import say, show_text
 from affcli.core.names import one_of
@@ -65,15 +64,6 @@ def export(
     All columns of the view affordance_wide, and the region: the part of the tool that the attractor
     was nearest to. Or all columns of the tables behavior, trial or step, for the same runs.
     """
-    choice = checked_choice(
-        tool=tool,
-        run=run,
-        all_runs=all_runs,
-        behavior=behavior,
-        probability=probability,
-        region=region,
-        limit=limit,
-    )
     known = one_of("kind of record", what, RELATIONS)
     relation = next(one for one in RELATIONS if one == known)
     if relation != "rows" and (behavior, probability, region) != (None, None, None):
@@ -85,8 +75,17 @@ def export(
     write = _checked_format(kind, out)
 
     with opened(database) as store:
-        runs = chosen_runs(store, choice, database)
-        wanted = choice.filter_for(runs)
+        runs, wanted = chosen_rows(
+            store,
+            database,
+            tool=tool,
+            run=run,
+            all_runs=all_runs,
+            behavior=behavior,
+            probability=probability,
+            region=region,
+            limit=limit,
+        )
         data, count = lab.table.taken_out(store, relation, runs, wanted, region, write)
     counted = f"{count or 'no'} {what if count != 1 else what[:-1]}"
     if out != STDOUT:

@@ -11,8 +11,7 @@ from affcli.cli.table_choice import (
     Region,
     Run,
     Tool,
-    checked_choice,
-    chosen_runs,
+    chosen_rows,
 )
 from affcli.cli.terminal import say, show, show_json
 from affcli.errors import one_line
@@ -36,18 +35,19 @@ def list_rows(
     Of the latest finished learning run of each tool, or of --tool, unless --run or --all-runs says
     otherwise.
     """
-    choice = checked_choice(
-        tool=tool,
-        run=run,
-        all_runs=all_runs,
-        behavior=behavior,
-        probability=probability,
-        region=region,
-        limit=limit,
-    )
     with opened(database) as store:
-        runs = chosen_runs(store, choice, database)
-        rows = lab.table.listed_rows(store, runs, choice.filter_for(runs), region)
+        runs, wanted = chosen_rows(
+            store,
+            database,
+            tool=tool,
+            run=run,
+            all_runs=all_runs,
+            behavior=behavior,
+            probability=probability,
+            region=region,
+            limit=limit,
+        )
+        rows = lab.table.listed_rows(store, runs, wanted, region)
     if as_json:
         show_json(rows_json(rows))
     else:

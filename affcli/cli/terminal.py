@@ -9,7 +9,7 @@ from collections import deque
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 from affcli.errors import AffcliError, one_line
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
     from rich.console import Console, RenderableType
-    from rich.progress import Progress, TaskID
 
 
+T = TypeVar("T")
 NARROWEST = 20
 """A terminal of fewer columns is written to as if it had these."""
 
@@ -167,28 +167,14 @@ def shows_braille() -> bool:
     return unicode and not (on_terminal() and os.environ.get("TERM") == "linux")
 
 
-class Bar:
-    """How far some work has come; shows nothing, as without a terminal."""
-
-    def update(self, done: float, status: str) -> None:
-        """Say how much is done, and in words."""
-
-
-class _VisibleBar(Bar):
-    """A bar on the terminal."""
-
-    def __init__(self, shown: "Progress", task: "TaskID") -> None:
-        self._shown, self._task = shown, task
-
-    def update(self, done: float, status: str) -> None:
-        self._shown.update(self._task, completed=done, status=status)
-
-
 @contextmanager
-def progress(description: str, total: float) -> "Iterator[Bar]":
-    """Give a bar on stderr that leaves nothing behind; silent without a terminal."""
+def progress(description: str, total: float) -> "Iterator[Callable[[float, str], object]]":
+    """Give a bar on stderr that is told how much is done, and a status, and leaves nothing behind.
+
+    Silent without a terminal.
+    """
     if not sys.stderr.isatty():
-        yield Bar()
+        yield lambda _done, _status: None
         return
     from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -199,7 +185,18 @@ def progress(description: str, total: float) -> "Iterator[Bar]":
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=_console(sys.stderr), transient=True) as shown:
-        yield _VisibleBar(shown, shown.add_task(description, total=total, status=""))
+        task = shown.add_task(description, total=total, status="")
+        yield lambda done, status: shown.update(task, completed=done, status=status)
+
+
+def followed(items: "Iterable[T]", description: str, total: int, noun: str) -> "list[T]":
+    """Return all of some items, while a bar counts them as they come."""
+    done = []
+    with progress(description, total) as bar:
+        for item in items:
+            done.append(item)
+            bar(len(done), f"{len(done)} of {total} {noun}")
+    return done
 
 
 class _Page(io.StringIO):

@@ -19,7 +19,7 @@ from affcli.cli.options import (
     TrialSensor,
     check_count,
 )
-from affcli.cli.terminal import now, progress, show_either
+from affcli.cli.terminal import followed, now, show_either
 from affcli.report.verification import verification_json, verification_tables
 
 
@@ -59,11 +59,8 @@ def verify(
         spec = lab.verifying.verification_spec(
             used, held, seed, sensor, rows, until_verdict=until_verdict
         )
-        tries = []
-        with progress(f"{used.spec.tool}, row by row", spec.tries) as bar:
-            for one in lab.verifying.verify(store, used, spec, now, update=update):
-                tries.append(one)
-                bar.update(len(tries), f"{len(tries)} of {spec.tries} tries")
+        doing = lab.verifying.verify(store, used, spec, now, update=update)
+        tries = followed(doing, f"{used.spec.tool}, row by row", spec.tries, "tries")
     found = Verification(used.id, spec, used.rows, update, tuple(tries))
     show_either(
         as_json=as_json,

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,10 +51,6 @@ class Reason(NamedTuple):
     name: str
     rows: int | None = None
     value: float | None = None
-
-    def as_json(self) -> dict[str, Any]:
-        """Return the reason as JSON types."""
-        return self._asdict()
 
 
 Reasons = tuple[Reason, ...]

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 from affcli.core.affordance import Affordance
 from affcli.core.behavior import BehaviorCall
+from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.choice import Reasons
 from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Movement
@@ -102,7 +103,7 @@ class TrialInfo:
 
     Args:
         id: its number in the store.
-        session_id, session_kind: the command it is part of.
+        session_id: the command it is part of.
         run_id: the learning run whose table it used.
         spec: what it is a function of, beside that table.
         learned: what the learning run is a function of.
@@ -115,7 +116,6 @@ class TrialInfo:
 
     id: int
     session_id: int
-    session_kind: str
     run_id: int
     spec: TrialSpec
     learned: LearningSpec
@@ -191,6 +191,26 @@ class StoredStep:
     lost: bool | None
     times_used_after: int
     times_successful_after: int
+
+    @property
+    def blocked(self) -> bool:
+        """The tool could not be lowered."""
+        return self.status is None
+
+    @property
+    def moved(self) -> bool:
+        """The movement seen is one that the change detection function T detects."""
+        return self.seen_distance > MOVEMENT_THRESHOLD
+
+    @property
+    def attractor_start(self) -> Point:
+        """Where the attractor truly was; where it was seen in a world that cannot tell."""
+        return self.true_start or self.seen_start
+
+    @property
+    def attractor_end(self) -> Point:
+        """As `attractor_start`, after the step."""
+        return self.true_end or self.seen_end
 
 
 class StoredReplication(NamedTuple):

@@ -3,9 +3,7 @@
 from dataclasses import dataclass
 
 from affcli.core.behavior import BehaviorCall
-from affcli.core.geometry import Point
 from affcli.core.specs import Protocol
-from affcli.core.trial import Outcome
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,51 +44,16 @@ class LearningInterval:
 
 
 @dataclass(frozen=True, slots=True)
-class TrialResult:
-    """How one testing trial ended.
-
-    Args:
-        id: its number in the store.
-        session_kind, session_id: the command it is part of.
-        run_id: the learning run whose table it used.
-        robot, protocol, tool, shape, task_set, goal, start: which trial; the last five are names.
-        planner: how the robot chose its rows, as `core.identity.Component` writes it.
-        sensor: through what the robot saw.
-        outcome: how it ended.
-        steps: how many steps it took.
-        robot_seconds: how long it took.
-    """
-
-    id: int
-    session_kind: str
-    session_id: int
-    run_id: int
-    robot: int
-    protocol: Protocol
-    tool: str
-    shape: str
-    task_set: str
-    goal: str
-    start: str
-    planner: str
-    sensor: str
-    outcome: Outcome
-    steps: int
-    robot_seconds: float
-
-
-@dataclass(frozen=True, slots=True)
 class SuccessCount:
     """Successes of one robot with one tool and one goal, over the starts.
 
     Args:
-        session_id: the command they are part of.
-        robot, protocol, tool, shape, task_set, goal, planner: which trials, as in `TrialResult`.
+        robot, protocol, tool, shape, task_set, goal: which trials.
+        planner: how the robot chose its rows, as `core.identity.Component` writes it.
         trials: how many ended; invalid ones are left out.
         solved: how many of them were solved.
     """
 
-    session_id: int
     robot: int
     protocol: Protocol
     tool: str
@@ -100,43 +63,6 @@ class SuccessCount:
     planner: str
     trials: int
     solved: int
-
-
-@dataclass(frozen=True, slots=True)
-class OutcomeCount:
-    """How many trials of a protocol ended in one way."""
-
-    protocol: Protocol
-    outcome: Outcome
-    trials: int
-
-
-@dataclass(frozen=True, slots=True)
-class RowUse:
-    """What the trials of a session made of one affordance, over all of them.
-
-    Args:
-        affordance_id: the row.
-        robot: whose row it is.
-        step: of the learning run that made it.
-        exploratory: its behavior.
-        offset: where the attractor was as seen from the wrist when it was made (in).
-        lost: whether it was truly lost when the tool broke; None for a whole tool.
-        trials: in how many trials it was tried.
-        tries, successes: how often it was tried, and replicated.
-        deaths: in how many trials it died.
-    """
-
-    affordance_id: int
-    robot: int
-    step: int
-    exploratory: BehaviorCall
-    offset: Point
-    lost: bool | None
-    trials: int
-    tries: int
-    successes: int
-    deaths: int
 
 
 @dataclass(frozen=True, slots=True)

@@ -132,6 +132,11 @@ class TrialSpec:
         return self.held.name
 
     @property
+    def task_set(self) -> str:
+        """The name of the set of tasks."""
+        return self.task.task_set
+
+    @property
     def goal(self) -> str:
         """The name of the goal."""
         return self.task.goal.name

@@ -2,7 +2,6 @@
 
 from affcli.analysis.adaptation import AdaptationCourse
 from affcli.analysis.breaking import missing_side
-from affcli.core.records import SessionInfo
 from affcli.errors import UsageError
 from affcli.lab.sessions import finished_session
 from affcli.store import Store
@@ -23,13 +22,13 @@ def adaptation_in(store: Store, number: int | None) -> AdaptationCourse:
         raise UsageError(
             "no finished trials with a broken tool yet; run affcli break-tool, or affcli reproduce"
         )
-    broken_tools = store.results.broken_tools(session.id)
-    if not broken_tools:
+    first = store.trials.first_broken(session.id)
+    if first is None:
         raise UsageError(
             f"session {session.id} holds no trials with a broken tool; run affcli break-tool"
         )
-    tool, shape = broken_tools[0]
-    side = _missing_side(store, session, tool, shape)
+    tool, shape = first.spec.tool, first.spec.shape
+    side = missing_side(first.learned.held, first.spec.held)
     by_robot = session.spec.robots > 1
     broken, whole = (
         store.results.trial_groups(session.id, tool, held, side, by_robot=by_robot)
@@ -42,12 +41,3 @@ def adaptation_in(store: Store, number: int | None) -> AdaptationCourse:
             "for longer, and run affcli break-tool again"
         )
     return course
-
-
-def _missing_side(store: Store, session: SessionInfo, tool: str, shape: str) -> float:
-    """Return x of the middle of what is missing of a tool that broke (in, tool frame)."""
-    learned = store.learning.runs(session_id=session.id, tool=tool)
-    run = learned[0].id if learned else store.results.trials(session_id=session.id)[0].run_id
-    trials = store.trials.trials(session_id=session.id, run_id=run)
-    broken = next(trial for trial in trials if trial.spec.shape == shape)
-    return missing_side(broken.learned.held, broken.spec.held)

@@ -1,17 +1,12 @@
 """A stored trial, gathered for its film strip."""
 
-from affcli.core.behavior import BehaviorCall
-from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.geometry import Pose
-from affcli.core.records import StoredStep, TrialInfo
+from affcli.core.records import TrialInfo
 from affcli.core.tool import hold_of
-from affcli.errors import UsageError, one_line
+from affcli.errors import UsageError
 from affcli.lab.run_parts import require_shape, settings_of
-from affcli.report.film import FilmedStep, FilmedTrial
+from affcli.report.film import FilmedTrial
 from affcli.store import Store
-
-LONGEST_BEHAVIOR = 20
-"""Letters of a behavior's name and distance; those of affcli have 17 at most."""
 
 
 def film_of(store: Store, trial_id: int, wanted: tuple[int, int] | None = None) -> FilmedTrial:
@@ -29,7 +24,7 @@ def film_of(store: Store, trial_id: int, wanted: tuple[int, int] | None = None) 
     info = store.trials.trial(trial_id)
     for tool in (info.learned.held, info.spec.held):
         require_shape(tool, f"trial {trial_id}: ")
-    steps = tuple(map(_filmed, store.trials.steps(trial_id)))
+    steps = store.trials.steps(trial_id)
     if wanted is not None:
         _require_steps(trial_id, wanted, len(steps))
     spec, learned = info.spec, info.learned
@@ -47,34 +42,6 @@ def film_of(store: Store, trial_id: int, wanted: tuple[int, int] | None = None) 
         table=workspace.table,
         steps=steps,
     )
-
-
-def _filmed(step: StoredStep) -> FilmedStep:
-    """Return a step as a panel shows it."""
-    return FilmedStep(
-        number=step.number,
-        behavior=_plain(step.row.exploratory),
-        row=step.affordance_id,
-        wrist_start=step.wrist_start,
-        wrist_end=step.wrist_end,
-        # Where a world does not tell the truth, what was seen stands for it.
-        puck_start=step.true_start or step.seen_start,
-        puck_end=step.true_end or step.seen_end,
-        expected=step.expected,
-        seen=step.seen,
-        moved=step.seen_distance > MOVEMENT_THRESHOLD,
-        replicated=step.replicated,
-        blocked=step.status is None,
-        excluded=step.died,
-        lost=step.lost,
-        successful=step.times_successful_after,
-        used=step.times_used_after,
-    )
-
-
-def _plain(call: BehaviorCall) -> str:
-    """Return a behavior in letters that every font has, short enough for a panel."""
-    return one_line(str(call).encode("ascii", "backslashreplace").decode(), LONGEST_BEHAVIOR)
 
 
 def _require_steps(trial_id: int, wanted: tuple[int, int], count: int) -> None:

@@ -1,11 +1,10 @@
 """How learning went over robot time, read for figures."""
 
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from affcli.analysis.curves import INTERVALS, Curve, ToolCurves
 from affcli.core.records import LearningRunInfo, SessionInfo
-from affcli.core.results import LearningInterval
 from affcli.errors import UsageError
 from affcli.store import Store
 
@@ -21,8 +20,8 @@ def curves_of(store: Store, runs: Sequence[LearningRunInfo]) -> list[Curve]:
         UsageError: a run has not begun.
     """
     seconds = _seconds(runs)
-    did = _by_run(store.results.learning_intervals(seconds, run_ids=[run.id for run in runs]))
-    return [Curve.of(run, did[run.id], seconds) for run in runs]
+    did = store.results.learning_intervals(seconds)
+    return [Curve.of(run, did.get(run.id, ()), seconds) for run in runs]
 
 
 def curves_of_robots(
@@ -48,10 +47,10 @@ def curves_of_robots(
     if not runs:
         raise UsageError(f"--session {session_id}: no robot saved yet; go on with it first")
     seconds = _seconds(runs)
-    did = _by_run(store.results.learning_intervals(seconds, session_id=session_id, tools=tools))
+    did = store.results.learning_intervals(seconds, session_id)
     curves: dict[str, list[Curve]] = defaultdict(list)
     for run in runs:
-        curves[run.spec.tool].append(Curve.of(run, did[run.id], seconds))
+        curves[run.spec.tool].append(Curve.of(run, did.get(run.id, ()), seconds))
     return sessions[session_id], [ToolCurves.of(tool, some) for tool, some in curves.items()]
 
 
@@ -61,11 +60,3 @@ def _seconds(runs: Sequence[LearningRunInfo]) -> float:
         if run.robot_seconds == 0.0:
             raise UsageError(f"run {run.id} has not begun; go on with it first")
     return max(run.robot_seconds for run in runs) / INTERVALS
-
-
-def _by_run(intervals: Iterable[LearningInterval]) -> dict[int, list[LearningInterval]]:
-    """Return the intervals of each run."""
-    by_run: dict[int, list[LearningInterval]] = defaultdict(list)
-    for interval in intervals:
-        by_run[interval.run_id].append(interval)
-    return by_run

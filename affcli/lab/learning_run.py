@@ -110,7 +110,7 @@ def gone_on_with(info: LearningRunInfo) -> LearningRun:
         raise damaged
     try:
         run = LearningRun(info.spec, info.checkpoint)
-    except (KeyError, TypeError, ValueError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
         raise damaged from error
     stands = (run.behaviors, run.setting.robot.clock) == (info.behaviors, info.robot_seconds)
     if run.done or (info.checkpoint is not None and not stands):  # there would be no end to it

@@ -2,8 +2,6 @@
 
 from affcli.analysis.overview import Breaking, Overview, breaking_of, goal_counts
 from affcli.analysis.reproduction import Reproduction, failures_in
-from affcli.core.records import SessionInfo
-from affcli.core.results import RowUse
 from affcli.core.specs import Protocol
 from affcli.store import Store
 
@@ -22,7 +20,7 @@ def reproduction_of(store: Store, session_id: int, robots: int) -> Reproduction:
         robots,
         store.results.success_counts(session.id),
         store.results.outcome_counts([session.id]),
-        sum(use.tries for use in _uses(store, session, Protocol.TOOL_ADAPTATION) if use.lost),
+        store.results.losses(session.id, Protocol.TOOL_ADAPTATION)[0],
     )
 
 
@@ -31,15 +29,15 @@ def overview_of(store: Store) -> Overview:
     runs = store.learning.runs()
     latest: dict[tuple[object, ...], Breaking] = {}
     for session in store.sessions.all("break-tool"):
-        uses = {protocol: _uses(store, session, protocol) for protocol in Protocol}
-        one = breaking_of(session, store.results.trials(session_id=session.id), uses)
+        losses = {protocol: store.results.losses(session.id, protocol) for protocol in Protocol}
+        one = breaking_of(session, store.trials.trials(session_id=session.id), losses)
         if one is not None:
             latest[one.run, one.seed, one.tool, one.shape, one.sensor, one.planner] = one
     counted = [s.id for s in store.sessions.all("solve")] + [b.session for b in latest.values()]
     failures, trials = failures_in(store.results.outcome_counts(counted))
     return Overview(
         [(run, store.results.behavior_groups(run.id)) for run in runs],
-        goal_counts(store.results.trials(kind="solve"), runs),
+        goal_counts(store.trials.trials(kind="solve"), runs),
         list(latest.values()),
         failures,
         trials,
@@ -49,8 +47,3 @@ def overview_of(store: Store) -> Overview:
             if session.status == "done"
         ],
     )
-
-
-def _uses(store: Store, session: SessionInfo, protocol: Protocol) -> tuple[RowUse, ...]:
-    """Return what the trials of one protocol in a session made of rows."""
-    return store.results.row_uses(session.id, protocol)

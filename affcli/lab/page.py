@@ -30,7 +30,7 @@ def content_of(
     store: Store,
     robot: int | None = None,
     session: int | None = None,
-    done: Callable[[int, int], None] = lambda _, __: None,
+    done: Callable[[int, int], object] = lambda _, __: None,
 ) -> Content:
     """Return what the page shows.
 

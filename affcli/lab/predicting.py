@@ -8,7 +8,6 @@ from affcli.analysis.prediction import STAGES, Prediction, Push
 from affcli.core.affordance import Affordance, is_probable
 from affcli.core.identity import Component
 from affcli.core.observation import Movement, SensorKind, movement
-from affcli.core.ports import Experimenter
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import LearningSpec, VerificationSpec
 from affcli.core.tool import Tool
@@ -18,25 +17,6 @@ from affcli.lab.run_parts import settings_of, world_of
 from affcli.planning.prediction import TablePredictor
 from affcli.procedures.babbling import BabblingState, babble
 from affcli.store import Store
-
-
-class AlwaysElsewhere:
-    """An experimenter who puts the attractor somewhere else before every behavior."""
-
-    def __init__(self, experimenter: Experimenter) -> None:
-        self._experimenter = experimenter
-
-    def attractor_out_of_reach(self) -> bool:
-        """Say that it is: it will be put elsewhere."""
-        return True
-
-    def put_attractor_back(self) -> None:
-        """Put it at a random place within the tool's reach."""
-        self._experimenter.put_attractor_back()
-
-    def put_attractor_for(self, row: Affordance) -> None:
-        """Put it where a row can be tried."""
-        self._experimenter.put_attractor_for(row)
 
 
 def fresh_pushes(spec: VerificationSpec, learned: LearningSpec) -> Iterator[BabblingRecord]:
@@ -51,10 +31,11 @@ def fresh_pushes(spec: VerificationSpec, learned: LearningSpec) -> Iterator[Babb
     records = babble(
         setting.robot,
         setting.sensor,
-        AlwaysElsewhere(setting.experimenter),
+        setting.experimenter,
         setting.binding,
         registry.explorer(explorer, setting, settings_of(learned, spec.sensor)),
         BabblingState(),
+        elsewhere=True,
     )
     return islice(records, spec.tries)
 

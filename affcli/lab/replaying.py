@@ -193,7 +193,7 @@ def gif_of(
     replay: Replay,
     numbers: Sequence[int],
     speed: float,
-    drawn: Callable[[int], None] = lambda _: None,
+    drawn: Callable[[int], object] = lambda _: None,
 ) -> bytes:
     """Return some steps of a trial as a GIF.
 

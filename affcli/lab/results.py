@@ -27,7 +27,7 @@ def results_in(store: Store, session: int | None) -> Results:
     runs = [run for run in map(store.learning.latest, TOOLS) if run is not None]
     own = {run.id for run in runs if not other_parts(run.spec)}
     solving, breaking = (
-        [trial for trial in store.results.trials(kind=kind) if trial.run_id in own]
+        [trial for trial in store.trials.trials(kind=kind) if trial.run_id in own]
         for kind in ("solve", "break-tool")
     )
     single = results_of_single(solving, breaking)

@@ -160,10 +160,4 @@ def require_world_version(made: Component) -> None:
 @lru_cache(maxsize=16)
 def settings_of_text(text: str) -> Settings:
     """Return the settings that a spec keeps."""
-    try:
-        differing = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise DatabaseError("stored settings that are no JSON; restore a copy") from error
-    if not isinstance(differing, dict):
-        raise DatabaseError("stored settings without names; restore a copy")
-    return settings_from(differing)
+    return settings_from(json.loads(text))

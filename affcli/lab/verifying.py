@@ -13,7 +13,6 @@ from affcli.core.specs import LearningSpec, VerificationSpec
 from affcli.core.tool import Tool
 from affcli.core.trial import Truth
 from affcli.core.verification import Evidence, ReplicationRecord, Verdict, decided_after
-from affcli.core.world import Setting
 from affcli.errors import UsageError
 from affcli.lab.run_parts import world_of
 from affcli.lab.versions import versions
@@ -69,13 +68,7 @@ def replications(
         table: what the robot learned of `spec.tool`.
     """
     uses = int(table.times_used.sum())
-    return _replications(spec, table, world_of(learned).verification(spec, learned, uses))
-
-
-def _replications(
-    spec: VerificationSpec, table: AffordanceTable, setting: Setting
-) -> Iterator[tuple[ReplicationRecord, Truth | None]]:
-    """Run one verification in a world that was laid out for it."""
+    setting = world_of(learned).verification(spec, learned, uses)
     records = verify_rows(
         setting.robot,
         setting.sensor,
@@ -118,13 +111,12 @@ def verify(
     calibration = world.verification(spec, run.spec, 0).calibration
     with store.turn() if update else nullcontext():
         table, ids = store.learning.table(run.id)
-        setting = world.verification(spec, run.spec, int(table.times_used.sum()))
         number = 0
         if update:
             made_with = versions(world, spec.sensor)
             number = store.verifications.begin(run.id, spec, made_with, now(), calibration)
         done = []
-        for record, truth in _replications(spec, table, setting):
+        for record, truth in replications(spec, run.spec, table):
             row_id = ids[record.row.step]
             if update:
                 store.verifications.save(number, record, truth, row_id)

@@ -42,6 +42,8 @@ def babble(
     binding: BehaviorCall,
     explorer: Explorer,
     state: BabblingState,
+    *,
+    elsewhere: bool = False,
 ) -> Iterator[BabblingRecord]:
     """Try behaviors at wrist positions that the explorer chooses, without end.
 
@@ -53,6 +55,7 @@ def babble(
         binding: the binding behavior, executed once at the start.
         explorer: chooses what to try, and is told what came of it.
         state: updated in place before each record is yielded.
+        elsewhere: the experimenter puts the attractor elsewhere before each behavior.
     """
     if not state.grasped:
         robot.execute(binding, None)
@@ -60,7 +63,7 @@ def babble(
     while True:
         resets = redraws = 0
         placing: Execution | None = None
-        lost = experimenter.attractor_out_of_reach()
+        lost = elsewhere or experimenter.attractor_out_of_reach()
         while placing is None:
             if resets >= MOST_RESETS:
                 raise BadInputError(

@@ -2,46 +2,15 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from rich.console import RenderableType
 
-from affcli.core.geometry import Point
-from affcli.core.tool import Color
 from affcli.errors import one_line
 from affcli.report.sheet import Sheet
 
-
-class SeenBlob(Protocol):
-    """A blob in a picture (`perception.segmentation.Blob`)."""
-
-    @property
-    def x(self) -> float:
-        """Of its centroid (px)."""
-
-    @property
-    def y(self) -> float:
-        """Of its centroid (px)."""
-
-    @property
-    def area(self) -> int:
-        """Number of pixels."""
-
-
-class SeenPlace(Protocol):
-    """Something seen, taken back to the table (`perception.location.Place`)."""
-
-    @property
-    def point(self) -> Point:
-        """Where it is (in, table frame)."""
-
-    @property
-    def blob(self) -> SeenBlob:
-        """In the picture."""
-
-    @property
-    def color(self) -> Color:
-        """As seen."""
+if TYPE_CHECKING:
+    from affcli.perception.location import Place
 
 
 def calibration_tables(
@@ -83,7 +52,7 @@ def calibration_tables(
     return summary, left
 
 
-def places_table(places: Mapping[str, Sequence[SeenPlace]]) -> Sheet:
+def places_table(places: "Mapping[str, Sequence[Place]]") -> Sheet:
     """Return where on the table each colour is seen."""
     names = ("what", "seen", "x (in)", "y (in)", "at pixel", "pixels", "colour")
     table = Sheet(names, left=("what", "seen"), caption="colour: red, green, blue as seen")
@@ -102,7 +71,7 @@ def places_table(places: Mapping[str, Sequence[SeenPlace]]) -> Sheet:
     return table
 
 
-def places_json(places: Mapping[str, Sequence[SeenPlace]]) -> list[dict[str, Any]]:
+def places_json(places: "Mapping[str, Sequence[Place]]") -> list[dict[str, Any]]:
     """Return where on the table each colour is seen, as JSON types."""
     return [
         {
@@ -124,6 +93,6 @@ def places_json(places: Mapping[str, Sequence[SeenPlace]]) -> list[dict[str, Any
     ]
 
 
-def condition(found: Sequence[SeenPlace]) -> str:
+def condition(found: "Sequence[Place]") -> str:
     """Return in words how often something is seen: that there is one of it is not a given."""
     return ("no", "once")[len(found)] if len(found) < 2 else f"{len(found)} times"

@@ -4,10 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from affcli.core.geometry import Point, Pose
-from affcli.core.observation import Movement
+from affcli.core.records import StoredStep
 from affcli.core.task import GoalRegion
 from affcli.core.tool import ToolPart
 from affcli.core.workspace import TableSurface
+from affcli.errors import one_line
 
 COLUMNS = 4
 """Panels in a row: narrower ones leave no room for what stands over them."""
@@ -15,44 +16,8 @@ MOST_PANELS = 12
 """Of a trial of which no steps are named: three rows."""
 MOST_NAMED = 16
 """Steps that can be asked for at once: they fill a page."""
-
-
-@dataclass(frozen=True, slots=True)
-class FilmedStep:
-    """One step of a trial, as a panel shows it.
-
-    Args:
-        number: 1, 2, 3, ... within the trial.
-        behavior: the exploratory behavior, in words.
-        row: the row tried, by its id in the database.
-        wrist_start, wrist_end: the wrist before and after the exploratory behavior; when the tool
-            could not be lowered, before and after it was carried there (in, rad, table frame).
-        puck_start, puck_end: where the attractor truly was (in, table frame).
-        expected, seen: movement of the attractor that the row predicts, and that was observed.
-        moved: the movement seen is one that the change detection function T detects.
-        replicated: it counts as a success of the row.
-        blocked: the tool could not be lowered.
-        excluded: the step took the row out of further consideration.
-        lost: the broken tool cannot do what the row says; None for a whole tool.
-        successful, used: the row's counters after the step.
-    """
-
-    number: int
-    behavior: str
-    row: int
-    wrist_start: Pose
-    wrist_end: Pose
-    puck_start: Point
-    puck_end: Point
-    expected: Movement
-    seen: Movement
-    moved: bool
-    replicated: bool
-    blocked: bool
-    excluded: bool
-    lost: bool | None
-    successful: int
-    used: int
+LONGEST_BEHAVIOR = 20
+"""Letters of a behavior's name and distance; those of affcli have 17 at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +45,7 @@ class FilmedTrial:
     puck: Point
     puck_radius: float
     table: TableSurface
-    steps: tuple[FilmedStep, ...]
+    steps: tuple[StoredStep, ...]
 
     @property
     def course(self) -> str:
@@ -101,8 +66,8 @@ class Shown:
     """
 
     start: bool
-    takes: tuple[tuple[FilmedStep, ...], ...]
-    left_out: tuple[FilmedStep, ...] = ()
+    takes: tuple[tuple[StoredStep, ...], ...]
+    left_out: tuple[StoredStep, ...] = ()
 
     @property
     def panels(self) -> int:
@@ -123,7 +88,7 @@ class Shown:
         return f"left out: {len(self.left_out)} steps, of which {vain} not replicated"
 
 
-def shown_of(steps: Sequence[FilmedStep], wanted: tuple[int, int] | None) -> Shown:
+def shown_of(steps: Sequence[StoredStep], wanted: tuple[int, int] | None) -> Shown:
     """Choose what gets a panel.
 
     Choice: steps that are named have one each. Of a whole trial, steps in a row that tried the same
@@ -150,32 +115,38 @@ def shown_of(steps: Sequence[FilmedStep], wanted: tuple[int, int] | None) -> Sho
     )
 
 
-def _takes(steps: Sequence[FilmedStep]) -> tuple[tuple[FilmedStep, ...], ...]:
+def _takes(steps: Sequence[StoredStep]) -> tuple[tuple[StoredStep, ...], ...]:
     """Return the steps, those together that did the same in vain one after the other."""
-    takes: list[tuple[FilmedStep, ...]] = []
+    takes: list[tuple[StoredStep, ...]] = []
     for step in steps:
         before = takes[-1][-1] if takes else step
         still = not (before.moved or step.moved)
-        if takes and still and (before.row, before.blocked) == (step.row, step.blocked):
+        if takes and still and _tried(before) == _tried(step):
             takes[-1] += (step,)
         else:
             takes.append((step,))
     return tuple(takes)
 
 
-def take_title(take: Sequence[FilmedStep]) -> str:
+def _tried(step: StoredStep) -> tuple[int, bool]:
+    """Return which row a step tried, and whether the tool could not be lowered."""
+    return step.affordance_id, step.blocked
+
+
+def take_title(take: Sequence[StoredStep]) -> str:
     """Return what stands over a panel: ``2-7  slide arm left 2, row 519``."""
     first, last = take[0], take[-1]
     numbers = str(last.number) if first is last else f"{first.number}-{last.number}"
-    return f"{numbers}  {last.behavior}, row {last.row}"
+    plain = str(last.row.exploratory).encode("ascii", "backslashreplace").decode()
+    return f"{numbers}  {one_line(plain, LONGEST_BEHAVIOR)}, row {last.affordance_id}"
 
 
-def take_verdict(take: Sequence[FilmedStep]) -> str:
+def take_verdict(take: Sequence[StoredStep]) -> str:
     """Return what came of a panel's steps: ``not replicated: 1/2, excluded``."""
     last = take[-1]
     came_of_it = "replicated" if last.replicated else "not replicated"
     if last.blocked:
         came_of_it = "blocked"
     times = f" {len(take)} times" if len(take) > 1 else ""
-    ending = ", excluded" if last.excluded else ""
-    return f"{came_of_it}{times}: {last.successful}/{last.used}{ending}"
+    ending = ", excluded" if last.died else ""
+    return f"{came_of_it}{times}: {last.times_successful_after}/{last.times_used_after}{ending}"

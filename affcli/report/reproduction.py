@@ -116,14 +116,10 @@ def _totals_table(result: Reproduction) -> Sheet:
     ):
         if counts:
             spread = Spread.of(counts)
+            interval = "-" if spread.mean_ci is None else "{:.1f} to {:.1f}".format(*spread.mean_ci)
             robots = _marked(f"[{spread.low},{spread.high}]", counts, paper)
-            table.add(name, str(paper), f"{spread.mean:.1f}", interval_words(spread), robots)
+            table.add(name, str(paper), f"{spread.mean:.1f}", interval, robots)
     return table
-
-
-def interval_words(spread: Spread) -> str:
-    """Return the 95 % interval of a mean; - where one robot has none."""
-    return "-" if spread.mean_ci is None else "{:.1f} to {:.1f}".format(*spread.mean_ci)
 
 
 def _others_table(result: Reproduction) -> Sheet:

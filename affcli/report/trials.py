@@ -112,7 +112,7 @@ def trial_json(spec: TrialSpec, end: TrialEnd, steps: Steps | None = None) -> di
     }
     if steps is not None:
         left = end.last_reasons
-        value["reasons_at_end"] = None if left is None else [one.as_json() for one in left]
+        value["reasons_at_end"] = None if left is None else [one._asdict() for one in left]
         value["explain"] = [step_json(row, record, spec.task.goal) for row, record in steps]
     return value
 
@@ -130,7 +130,7 @@ def step_json(row: int, record: StepRecord, goal: Goal) -> dict[str, Any]:
         "step": record.number,
         "row": row,
         "behavior": str(record.row.exploratory),
-        "reasons": [reason.as_json() for reason in record.reasons],
+        "reasons": [reason._asdict() for reason in record.reasons],
         "regrasped": record.regrasped,
         "placing": record.placing.status.value,
         "distance_to_goal": now,

@@ -3,7 +3,6 @@
 import sqlite3
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 
 import sqlalchemy as sa
@@ -36,7 +35,6 @@ OF_THE_STATEMENT = frozenset({sqlite3.SQLITE_ERROR, sqlite3.SQLITE_CONSTRAINT})
 """Result codes by which a migration says that it does not fit what it found."""
 
 
-@dataclass(frozen=True, slots=True)
 class Store:
     """An open database: an object for each thing that is kept.
 
@@ -45,7 +43,20 @@ class Store:
     kept.
     """
 
-    database: Database
+    def __init__(self, database: Database) -> None:
+        self.database = database
+        self.sessions = Sessions(database)
+        """Sessions, and the robots of reproductions."""
+        self.learning = Learning(database)
+        """Learning runs, with the behaviors and the rows of each."""
+        self.trials = Trials(database)
+        """Testing trials, with the steps of each."""
+        self.verifications = Verifications(database)
+        """Verifications, with the tries of each."""
+        self.results = Results(database)
+        """Counts and sums for reports."""
+        self.selections = Selections(database)
+        """Rows of tables, chosen by what they hold."""
 
     @property
     def path(self) -> Path:
@@ -63,36 +74,6 @@ class Store:
         """
         with self.database.writing():
             yield
-
-    @property
-    def sessions(self) -> Sessions:
-        """Sessions, and the robots of reproductions."""
-        return Sessions(self.database)
-
-    @property
-    def learning(self) -> Learning:
-        """Learning runs, with the behaviors and the rows of each."""
-        return Learning(self.database)
-
-    @property
-    def trials(self) -> Trials:
-        """Testing trials, with the steps of each."""
-        return Trials(self.database)
-
-    @property
-    def verifications(self) -> Verifications:
-        """Verifications, with the tries of each."""
-        return Verifications(self.database)
-
-    @property
-    def results(self) -> Results:
-        """Counts and sums for reports."""
-        return Results(self.database)
-
-    @property
-    def selections(self) -> Selections:
-        """What filters leave."""
-        return Selections(self.database)
 
 
 @contextmanager

@@ -95,11 +95,6 @@ def point_or_none(row: Columns, name: str) -> Point | None:
     return None if row[f"{name}_x"] is None else point(row, name)
 
 
-def _flag(stored: int | None) -> bool | None:
-    """Return what a column says that may say nothing."""
-    return None if stored is None else bool(stored)
-
-
 def affordance(row: Columns) -> Affordance:
     """Return an affordance with the counters that stand in the row."""
     return Affordance(
@@ -230,7 +225,6 @@ def trial(row: Columns, learned: Mapping[int, LearningSpec]) -> TrialInfo:
         return TrialInfo(
             id=row["id"],
             session_id=row["session_id"],
-            session_kind=row["kind"],
             run_id=row["learning_run_id"],
             spec=spec,
             learned=learned[row["learning_run_id"]],
@@ -262,7 +256,7 @@ def stored_step(row: Columns, tried: Affordance) -> StoredStep:
         seen=Movement(row["seen_dx"], row["seen_dy"], 0.0),
         replicated=bool(row["replicated"]),
         died=bool(row["died"]),
-        lost=_flag(row["lost"]),
+        lost=None if row["lost"] is None else bool(row["lost"]),
         **{name: row[name] for name in names},
     )
 

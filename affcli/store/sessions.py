@@ -40,11 +40,6 @@ class Sessions:
                     return int(found.id)
             return insert_one(connection, session, rows.session_row(spec, versions, now))
 
-    def find(self, spec: SessionSpec) -> SessionInfo | None:
-        """Return the latest session of a spec, None when there is none."""
-        found = self.database.mappings(_like(spec).limit(1))
-        return reading.session(found[0]) if found else None
-
     def all(self, kind: str | None = None) -> tuple[SessionInfo, ...]:
         """Return the sessions, all or of one kind, oldest first."""
         wanted = sa.select(session).order_by(session.c.id)

@@ -9,7 +9,7 @@ from affcli.core.affordance import PROBABILITY_THRESHOLD
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.records import StepScene, StoredStep, TrialInfo
 from affcli.core.replay import Difference
-from affcli.core.specs import Counters, TrialRecord, TrialSpec
+from affcli.core.specs import Counters, Protocol, TrialRecord, TrialSpec
 from affcli.core.trial import StepRecord, TrialEnd, TrialStep, Truth
 from affcli.errors import UsageError
 from affcli.store import reading, rows
@@ -119,17 +119,26 @@ class Trials:
             return _infos(connection, trial.c.id == trial_id)[0]
 
     def trials(
-        self, *, session_id: int | None = None, run_id: int | None = None
+        self, *, session_id: int | None = None, run_id: int | None = None, kind: str | None = None
     ) -> tuple[TrialInfo, ...]:
-        """Return testing trials, oldest first.
-
-        Args:
-            session_id: only those of this session.
-            run_id: only those that used the table of this learning run.
-        """
+        """Return the trials of a session, of a learning run, of sessions of a kind, or all."""
         named = ((trial.c.session_id, session_id), (trial.c.learning_run_id, run_id))
+        chosen = [column == value for column, value in named if value is not None]
+        if kind is not None:
+            of_kind = sa.select(session.c.id).where(session.c.kind == kind)
+            chosen.append(trial.c.session_id.in_(of_kind))
         with self.database.reading() as connection:
-            return _infos(connection, *(c == value for c, value in named if value is not None))
+            return _infos(connection, *chosen)
+
+    def first_broken(self, session_id: int) -> TrialInfo | None:
+        """Return the first trial of a session with a broken tool; None if it has none."""
+        adapting = Protocol.TOOL_ADAPTATION.value
+        of_session = sa.select(sa.func.min(trial.c.id)).where(
+            trial.c.session_id == session_id, trial.c.protocol == adapting
+        )
+        with self.database.reading() as connection:
+            found = _infos(connection, trial.c.id == of_session.scalar_subquery())
+        return next(iter(found), None)
 
     def steps(self, trial_id: int) -> tuple[StoredStep, ...]:
         """Return the steps of a trial with the rows they tried."""
@@ -318,7 +327,7 @@ def _infos(connection: sa.Connection, *conditions: sa.ColumnElement[bool]) -> tu
     used = sa.select(trial.c.learning_run_id).where(*conditions)
     runs = mappings(connection, selected_runs().where(learning_run.c.id.in_(used)))
     wanted = (
-        sa.select(trial, session.c.kind, session.c.versions, tool.c.definition)
+        sa.select(trial, session.c.versions, tool.c.definition)
         .select_from(
             trial.join(session, session.c.id == trial.c.session_id).outerjoin(
                 tool, tool.c.key == trial.c.shape_key

@@ -16,7 +16,6 @@ from affcli.lab.run_parts import (
     RunParts,
     require_world_version,
     settings_of,
-    settings_of_text,
     tasks_of,
     tool_of,
     world_of,
@@ -76,12 +75,6 @@ def test_settings_are_kept_as_what_differs_and_come_back_whole() -> None:
     assert spec.sensor == "exact"
     assert settings_of(spec) == other
     assert settings_of(spec, "noisy").sensor.kind == "noisy"
-
-
-@pytest.mark.parametrize("text", ["", "[1]", "{"])
-def test_settings_that_are_broken_are_damage(text: str) -> None:
-    with pytest.raises(DatabaseError, match="restore a copy"):
-        settings_of_text(text)
 
 
 def test_a_tool_is_the_one_that_was_learned_or_a_registered_one_in_the_runs_sizes() -> None:

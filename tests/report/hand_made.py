@@ -18,8 +18,8 @@ from affcli.core.behavior import (
 from affcli.core.choice import Reason
 from affcli.core.geometry import Point, Pose
 from affcli.core.identity import Component
-from affcli.core.observation import movement
-from affcli.core.records import LearningRunInfo, SessionInfo, StoredRow, StoredStep
+from affcli.core.observation import SensorKind, movement
+from affcli.core.records import LearningRunInfo, SessionInfo, StoredRow, StoredStep, TrialInfo
 from affcli.core.results import BehaviorGroup
 from affcli.core.specs import (
     Counters,
@@ -30,8 +30,9 @@ from affcli.core.specs import (
     TrialSpec,
 )
 from affcli.core.task import GoalRegion, Task
+from affcli.core.tool import ToolName
 from affcli.core.trial import Outcome, StepRecord, TrialEnd, TrialStep, Truth
-from tests.factories import affordance, learning_spec, observation, tool_named
+from tests.factories import affordance, learning_spec, observation, tool_named, trial_spec
 
 NOW = "2026-01-02T03:04:05+00:00"
 NESTED = Component("nested-query")
@@ -67,6 +68,36 @@ def learned_run(number: int, spec: LearningSpec, **changes: Any) -> LearningRunI
         finished_at=NOW,
     )
     return replace(run, **changes)
+
+
+def trial_info(
+    number: int,
+    run: LearningRunInfo,
+    tool: str,
+    goal: str,
+    start: str = "1",
+    *,
+    shape: str | None = None,
+    protocol: Protocol = Protocol.EXTENSION_OF_REACH,
+    task_set: str = TASK_SET,
+    planner: str = "nested-query",
+    sensor: SensorKind = "noisy",
+    outcome: Outcome = Outcome.SOLVED,
+    run_id: int | None = None,
+) -> TrialInfo:
+    """Return a trial of session 1 that ended after 4 steps."""
+    usual = trial_spec(run.spec)
+    region = replace(usual.task.goal, name=goal)
+    spec = replace(
+        usual,
+        protocol=protocol,
+        tool=tool,
+        held=replace(run.spec.held, name=ToolName(shape or tool)),
+        task=Task(task_set, region, start, usual.task.start),
+        planner=Component.parse(planner),
+        sensor=sensor,
+    )
+    return TrialInfo(*(number, 1, run_id or run.id, spec, run.spec, {}), *(outcome, 4, 20.0, None))
 
 
 def session_of(number: int, *, kind: str = "reproduce", **changes: Any) -> SessionInfo:

@@ -15,9 +15,9 @@ from affcli.core.choice import Reason
 from affcli.core.geometry import ConvexPolygon, Point, Pose
 from affcli.core.identity import Component
 from affcli.core.motion import Carry
-from affcli.core.records import LearningRunInfo
+from affcli.core.records import LearningRunInfo, TrialInfo
 from affcli.core.replay import Considered, Replay, ReplayedStep
-from affcli.core.results import OutcomeCount, SuccessCount, TrialResult
+from affcli.core.results import SuccessCount
 from affcli.core.scene import Scene
 from affcli.core.specs import Protocol, TrialSpec
 from affcli.core.tool import PUCK_COLOR, Color, Tool, ToolName, ToolPart, hold_of, unknown_tool
@@ -25,7 +25,7 @@ from affcli.core.trial import Outcome, TrialEnd, TrialStep
 from affcli.core.workspace import Workspace
 from affcli.report.page.content import Broken, Content, LearnedRows
 from tests.factories import affordance, learning_spec
-from tests.report.hand_made import TASK_SET, call, learned_run, session_of, spec, step
+from tests.report.hand_made import TASK_SET, call, learned_run, session_of, spec, step, trial_info
 
 RAKE = Tool(
     ToolName("rake"),
@@ -61,14 +61,10 @@ RUNS = (
 """One of each of the paper's tools, of the rake, and of what is only known as a spoon."""
 
 
-def results() -> list[TrialResult]:
+def results() -> list[TrialInfo]:
     """Return one trial of each run, at each of five goals, by each of two planners."""
     return [
-        TrialResult(
-            *(number, "solve", 1, run.id, 0, Protocol.EXTENSION_OF_REACH),
-            *(run.spec.tool, run.spec.tool, TASK_SET, goal, "1", planner, "noisy"),
-            *(Outcome.SOLVED, 4, 20.0),
-        )
+        trial_info(number, run, run.spec.tool, goal, planner=planner)
         for number, run in enumerate(RUNS, 1)
         for goal in ("1", "2", "3", "4", "far corner")
         for planner in ("nested-query", "lookahead:depth=2")
@@ -81,7 +77,7 @@ def count(
     """Return how often a robot solved four trials."""
     protocol = Protocol.TOOL_ADAPTATION if shape else Protocol.EXTENSION_OF_REACH
     return SuccessCount(
-        5, robot, protocol, tool, shape or tool, TASK_SET, goal, planner, trials=4, solved=solved
+        robot, protocol, tool, shape or tool, TASK_SET, goal, planner, trials=4, solved=solved
     )
 
 
@@ -98,10 +94,7 @@ def counts() -> list[SuccessCount]:
     return found
 
 
-OUTCOMES = [
-    OutcomeCount(Protocol.EXTENSION_OF_REACH, Outcome.SOLVED, 300),
-    OutcomeCount(Protocol.TOOL_ADAPTATION, Outcome.NO_ROW, 12),
-]
+OUTCOMES = {Outcome.SOLVED: 300, Outcome.NO_ROW: 12}
 REPRODUCTION = Reproduction.of(session_of(5, robots=3), 3, counts(), OUTCOMES, 7)
 OTHERWISE = Reproduction.of(
     session_of(6, robots=3, planner=LOOKAHEAD, binding=GRASP_HIGH), 3, counts(), OUTCOMES, 7

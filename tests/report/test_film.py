@@ -4,10 +4,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from affcli.core.records import StoredStep
 from affcli.report.film import (
     COLUMNS,
     MOST_PANELS,
-    FilmedStep,
     Shown,
     shown_of,
     take_title,
@@ -19,7 +19,7 @@ kinds = st.sampled_from(["moved", "in vain", "blocked"])
 courses = st.lists(st.tuples(kinds, st.integers(1, 3)), max_size=70)
 
 
-def trial_of(course: list[tuple[str, int]]) -> list[FilmedStep]:
+def trial_of(course: list[tuple[str, int]]) -> list[StoredStep]:
     """Return the steps of a trial: what came of each, and the row it tried."""
     return [
         filmed_step(number, row=row)
@@ -62,7 +62,7 @@ def test_a_panel_holds_several_steps_only_if_they_did_the_same_in_vain(
     course: list[tuple[str, int]],
 ) -> None:
     for take in shown_of(trial_of(course), None).takes:
-        assert len({(step.row, step.blocked) for step in take}) == 1
+        assert len({(step.affordance_id, step.blocked) for step in take}) == 1
         if len(take) > 1:
             assert not any(step.moved for step in take)
             first = take[0].number
@@ -119,7 +119,7 @@ def test_what_was_left_out_is_counted() -> None:
         ([in_vain(n) for n in (4, 5, 6)], "4-6  slide arm left 2, row 7", "not replicated 3 times"),
     ],
 )
-def test_the_words_over_a_panel(take: list[FilmedStep], title: str, verdict: str) -> None:
+def test_the_words_over_a_panel(take: list[StoredStep], title: str, verdict: str) -> None:
     assert take_title(take) == title
     assert take_verdict(take).startswith(verdict)
 

@@ -7,11 +7,9 @@ from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from affcli.errors import DatabaseError
 from affcli.report.csv_table import Value
 from affcli.report.json_table import json_lines
 from affcli.report.parquet_table import ROWS_AT_ONCE, parquet_bytes
@@ -72,12 +70,3 @@ def test_more_rows_than_are_held_at_once_are_all_there() -> None:
     count = 2 * ROWS_AT_ONCE + 1
     data = parquet_bytes([("n", int)], ((n,) for n in range(count)))
     assert read_parquet(data)["n"].to_pylist() == list(range(count))
-
-
-@pytest.mark.parametrize("row", [(1.5, 0.0, ""), ("1", 0.0, ""), (1, 2, ""), (1, 0.0, b"x\x1b")])
-def test_a_value_of_another_kind_is_refused(row: tuple[Value, ...]) -> None:
-    with pytest.raises(
-        DatabaseError, match=r"column \w+ holds a value that affcli did not wr"
-    ) as e:
-        parquet_bytes(COLUMNS, [(1, 1.0, "x"), row])
-    assert str(e.value).isprintable()

@@ -17,36 +17,25 @@ from affcli.analysis.comparison import Beside, Results, results_of_many, results
 from affcli.analysis.paper import BROKEN as IN_PAPER
 from affcli.analysis.paper import EXTENSION_OF_REACH, GOALS, TOOLS, TOTAL
 from affcli.analysis.statistics import Spread
-from affcli.core.results import TrialResult
+from affcli.core.records import TrialInfo
 from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome
 from affcli.report.figures.canvas import INK, SKY, TWO_COLUMNS, VERMILION, encoded
 from affcli.report.figures.results import results_figure
 from affcli.report.results import results_title
-from tests.report.hand_made import FOUR_ROBOTS, MANY_ROBOTS, TASK_SET, session_of
+from tests.report.hand_made import FOUR_ROBOTS, MANY_ROBOTS, RUNS, session_of, trial_info
 
 
 def result(
     tool: str, goal: str, start: int, *, solved: bool = True, shape: str | None = None, **more: Any
-) -> TrialResult:
+) -> TrialInfo:
     """Return how a trial of run 1 ended."""
-    which: dict[str, Any] = {
-        "id": 1,
-        "session_kind": "break-tool" if shape else "solve",
-        "session_id": 1,
-        "run_id": 1,
-        "robot": 0,
+    usual: dict[str, Any] = {
+        "shape": shape or tool,
         "protocol": Protocol.TOOL_ADAPTATION if shape else Protocol.EXTENSION_OF_REACH,
-        "task_set": TASK_SET,
-        "planner": "nested-query",
-        "sensor": "noisy",
         "outcome": Outcome.SOLVED if solved else Outcome.STEP_LIMIT,
-        "steps": 3,
-        "robot_seconds": 20.0,
     }
-    return TrialResult(
-        **(which | more), tool=tool, shape=shape or tool, goal=goal, start=str(start)
-    )
+    return trial_info(1, RUNS[0], tool, goal, str(start), **(usual | more))
 
 
 SOLVED = [result(tool, goal, start) for tool, goal in EXTENSION_OF_REACH for start in range(1, 5)]
@@ -57,7 +46,7 @@ BROKEN = [
 ]
 
 
-def single(whole: list[TrialResult], broken: list[TrialResult]) -> Results:
+def single(whole: list[TrialInfo], broken: list[TrialInfo]) -> Results:
     found = results_of_single(whole, broken)
     assert found is not None
     return found

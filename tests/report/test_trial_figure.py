@@ -56,7 +56,7 @@ def test_a_panel_shows_what_was_expected_and_what_was_seen() -> None:
         assert begins == START
         assert ends == pytest.approx((START.x + movement.dx, START.y + movement.dy))
     pucks = {patch.center for patch in panel.patches if isinstance(patch, Circle)}
-    assert pucks == {step.puck_start, step.puck_end}
+    assert pucks == {step.attractor_start, step.attractor_end}
 
 
 def test_where_the_puck_did_not_move_there_is_no_arrow_of_what_was_seen() -> None:
@@ -142,7 +142,7 @@ def test_nothing_written_lies_over_anything_else_written(count: int) -> None:
         )
         for number in range(60 - count, 60)
     ]
-    steps[0] = replace(steps[0], blocked=True)
+    steps[0] = replace(steps[0], status=None)
     trial = filmed_trial(*steps, ending="attractor out of reach", shape="l-hook")
     figure = trial_figure(trial, shown_of(trial.steps, (60 - count, 59)))
     figure.draw_without_rendering()

@@ -106,9 +106,11 @@ def test_rows_on_the_other_side_do_not_count(
 def test_the_whole_tool_s_trials_are_told_apart(store: Store, run: LearningRunInfo) -> None:
     well = trial_step(rows_of(store, run)[0], 1)
     session = save(store, run, 1, well, shape="t-hook")
-    assert store.results.broken_tools(session) == ()
+    assert store.trials.first_broken(session) is None
     save(store, run, 1, well)
-    assert store.results.broken_tools(session) == (("t-hook", "l-hook"),)
+    first = store.trials.first_broken(session)
+    assert first is not None
+    assert (first.spec.tool, first.spec.shape, first.learned.tool) == ("t-hook", "l-hook", "t-hook")
     for shape in ("t-hook", "l-hook"):
         (group,) = store.results.trial_groups(session, "t-hook", shape, RIGHT, by_robot=True)
         assert (group.trials, len(group.steps)) == (1, 1)

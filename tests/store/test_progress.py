@@ -31,9 +31,8 @@ def test_every_behavior_is_counted_in_the_interval_in_which_it_ended(
         number = int(record.clock / seconds)
         done, made = expected.get(number, (0, 0))
         expected[number] = (done + 1, made + (record.affordance is not None))
-    assert store.results.learning_intervals(seconds, run_ids=[run.id]) == tuple(
-        LearningInterval(run.id, number, *expected[number]) for number in sorted(expected)
-    )
+    intervals = [LearningInterval(run.id, n, *expected[n]) for n in sorted(expected)]
+    assert store.results.learning_intervals(seconds) == {run.id: intervals}
 
 
 def test_of_a_reproduction_every_robot_is_counted_and_of_a_run_only_that(store: Store) -> None:
@@ -41,18 +40,11 @@ def test_of_a_reproduction_every_robot_is_counted_and_of_a_run_only_that(store: 
     session = begun(store, "reproduce", robots=2)
     for robot in (0, 1):
         assert store.sessions.save_robot(session, robot_record(robot), VERSIONS, NOW)
-    runs = {run.id: run.spec for run in store.learning.runs(session_id=session)}
-    whole = store.results.learning_intervals(1e6, session_id=session)
-    assert [(i.run_id, i.number, i.behaviors, i.effects) for i in whole] == [
-        (run, 0, 6, 2) for run in runs
-    ]
-    hooks = store.results.learning_intervals(1e6, session_id=session, tools=["t-hook"])
-    assert {runs[i.run_id].tool for i in hooks} == {"t-hook"}
-    assert len(hooks) == 2
-    assert [i.run_id for i in store.results.learning_intervals(1e6, run_ids=[alone.id])] == [
-        alone.id
-    ]
-    assert store.results.learning_intervals(1e6) == ()
+    runs = store.learning.runs(session_id=session)
+    whole = store.results.learning_intervals(1e6, session)
+    assert whole == {run.id: [LearningInterval(run.id, 0, 6, 2)] for run in runs}
+    assert list(store.results.learning_intervals(1e6)) == [alone.id]
+    assert store.results.learning_intervals(1e6, session + 1) == {}
 
 
 def stored_trial(store: Store, run: int, session: int, start: int, *failed: int) -> int:

@@ -2,7 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 from itertools import zip_longest
-from typing import TYPE_CHECKING
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure, FigureBase
 
 from affcli.analysis.row_status import RowStatus
 from affcli.core.affordance import Affordance
@@ -16,10 +18,6 @@ from affcli.report.figures.things import draw_grasp, draw_parts, draw_puck
 from affcli.report.figures.words import call_words
 from affcli.report.table_views import TableView
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure, FigureBase
-
 MARGIN = 0.8
 """Room around all that is drawn (in of the table)."""
 ASPECTS = 0.4, 2.5
@@ -32,7 +30,7 @@ MOST_BESIDE = 5
 
 def affordances_figure(
     calls: Sequence[BehaviorCall], views: Sequence[TableView], key: Mapping[RowStatus, str]
-) -> "Figure":
+) -> Figure:
     """Return the panels of one affordance table, or of several side by side.
 
     Each arrow starts where the attractor was as seen from the wrist just before the exploratory
@@ -87,8 +85,8 @@ def _arranged(
 
 
 def _draw_table(
-    page: "FigureBase", view: TableView, calls: Sequence[BehaviorCall], columns: int
-) -> "list[Axes]":
+    page: FigureBase, view: TableView, calls: Sequence[BehaviorCall], columns: int
+) -> list[Axes]:
     """Draw one table, a panel for each call; return the panels."""
     labels = "x from the wrist (in)", "y from the wrist (in)"
     panels = map_panels(page, len(calls), columns, labels)
@@ -106,7 +104,7 @@ def _draw_table(
     return panels
 
 
-def _draw_panel(axes: "Axes", view: TableView, call: BehaviorCall) -> None:
+def _draw_panel(axes: Axes, view: TableView, call: BehaviorCall) -> None:
     """Draw the rows of one call over the tool."""
     axes.set_title(call_words(call))
     draw_parts(axes, view.parts)

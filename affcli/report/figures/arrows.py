@@ -3,21 +3,19 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.legend import Legend
 from matplotlib.legend_handler import HandlerBase
 from matplotlib.patches import Polygon
+from matplotlib.transforms import Transform
 
 from affcli.analysis.row_status import RowStatus
 from affcli.core.geometry import Point
 from affcli.report.figures.canvas import BLUE, FAINT, GREEN, VERMILION
-
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.legend import Legend
-    from matplotlib.transforms import Transform
 
 Arrow = tuple[Point, Point]
 """Start and end (in, the axes' frame)."""
@@ -63,7 +61,7 @@ LOOKS: Mapping[RowStatus, Look] = {
 }
 
 
-def draw_arrows(axes: "Axes", arrows: Sequence[Arrow], look: Look, head: float) -> None:
+def draw_arrows(axes: Axes, arrows: Sequence[Arrow], look: Look, head: float) -> None:
     """Draw arrows, as one artist for all lines and one for all heads.
 
     Args:
@@ -107,15 +105,15 @@ class ArrowKey(HandlerBase):
 
     def create_artists(
         self,
-        legend: "Legend",
+        legend: Legend,
         orig_handle: Any,
         xdescent: float,
         ydescent: float,
         width: float,
         height: float,
         fontsize: float,
-        trans: "Transform",
-    ) -> Sequence["Artist"]:
+        trans: Transform,
+    ) -> Sequence[Artist]:
         """Return the line and the head, in the legend's own frame."""
         del legend, fontsize
         look: Look = orig_handle

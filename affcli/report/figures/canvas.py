@@ -71,9 +71,8 @@ METADATA: dict[str, dict[str, None]] = {
     "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
 }
 """Nothing of when or with what: the same figure gives the same file."""
-
 Drawing = Figure
-"""What is drawn, for those who hand it on and know no Matplotlib."""
+"""What the figures return, for those who may not know Matplotlib."""
 
 
 @contextmanager

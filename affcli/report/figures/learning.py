@@ -2,8 +2,10 @@
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
@@ -23,10 +25,6 @@ from affcli.report.figures.canvas import (
 from affcli.report.figures.key import draw_key
 from affcli.report.figures.maps import columns_for
 from affcli.report.figures.words import tool_words
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 DASHES: tuple[Any, ...] = (
     "-",
@@ -49,7 +47,7 @@ SHADE = "#bcd9ea"
 """Of the bands: `SKY`, paler."""
 
 
-def curves_figure(curves: Sequence[Curve]) -> "Figure":
+def curves_figure(curves: Sequence[Curve]) -> Figure:
     """Return learning runs as lines: rows made above, the share of effects below.
 
     Args:
@@ -71,7 +69,7 @@ def curves_figure(curves: Sequence[Curve]) -> "Figure":
     return figure
 
 
-def bands_figure(tools: Sequence[ToolCurves]) -> "Figure":
+def bands_figure(tools: Sequence[ToolCurves]) -> Figure:
     """Return many robots' learning: a column a tool, mean and central 95 % of the robots."""
     columns = columns_for(len(tools), MOST_BESIDE)
     rows = 2 * math.ceil(len(tools) / columns)
@@ -116,7 +114,7 @@ def _look(number: int, curve: Curve) -> dict[str, Any]:
     }
 
 
-def _finish(above: "Axes", below: "Axes") -> None:
+def _finish(above: Axes, below: Axes) -> None:
     """Set the limits of two axes, one above the other, and name the time."""
     above.set_ylim(bottom=0.0)
     below.set_ylim(0.0, None)

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from affcli.analysis.prediction import Errors, Push, Score, scores
+from affcli.analysis.prediction import Push, Score, scores
 from affcli.analysis.statistics import wilson
 from affcli.report.figures.canvas import (
     BLUE,
@@ -86,7 +86,7 @@ def _draw_errors(axes: Axes, growing: Sequence[Score], kind: str, label: str) ->
             known = [
                 (score.rows, value)
                 for score in growing
-                if (value := _error(getattr(score, field), kind + suffix)) is not None
+                if (value := getattr(getattr(score, field), kind + suffix)) is not None
             ]
             axes.plot(
                 [rows for rows, _ in known],
@@ -100,12 +100,6 @@ def _draw_errors(axes: Axes, growing: Sequence[Score], kind: str, label: str) ->
             )
     axes.set_ylim(bottom=0.0)
     axes.set_ylabel(label)
-
-
-def _error(errors: Errors, kind: str) -> float | None:
-    """Return one of the errors by its name."""
-    value: float | None = getattr(errors, kind)
-    return value
 
 
 def _rows_axis(axes: Axes, growing: Sequence[Score]) -> None:

@@ -1,8 +1,9 @@
 """One row of an affordance table, as the paper's table shows one (Fig. 5)."""
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from affcli.core.affordance import Affordance
@@ -22,10 +23,6 @@ from affcli.report.figures.words import behavior_words, call_words
 from affcli.report.table_views import RowView
 from affcli.report.words import parameter_words
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
 HEADINGS = (
     "Grasping behavior\nand its parameters",
     "Exploratory behavior\nand its parameters",
@@ -41,7 +38,7 @@ MOVED = Look(INK, width=1.1, level=7.0)
 PROBABILITY = r"$\dfrac{\mathrm{times\ successful}}{\mathrm{times\ used}}$"
 
 
-def row_figure(view: RowView) -> "Figure":
+def row_figure(view: RowView) -> Figure:
     """Return one row: grasp, behavior, what was seen before and after, probability.
 
     Tool and attractor are drawn where the observations put them, from where the wrist was at the
@@ -80,13 +77,13 @@ def _wrist(seen: Observation) -> Pose:
     return Pose(x - seen.wrist_to_object_x, y - seen.wrist_to_object_y, 0.0)
 
 
-def _draw_tool(axes: "Axes", view: RowView, wrist: Pose) -> None:
+def _draw_tool(axes: Axes, view: RowView, wrist: Pose) -> None:
     """Draw the tool with its grasp point at the wrist."""
     draw_parts(axes, view.tool.parts, wrist)
     draw_grasp(axes, wrist)
 
 
-def _draw_end(axes: "Axes", view: RowView) -> None:
+def _draw_end(axes: Axes, view: RowView) -> None:
     """Draw where tool and attractor came to, whence they came, and the detected movement."""
     row = view.row
     wrist, moved = _wrist(row.start), _wrist(row.end)
@@ -101,7 +98,7 @@ def _draw_end(axes: "Axes", view: RowView) -> None:
     _write_below(axes, *_places(row.end), f"detected movement {length:.1f} in")
 
 
-def _write_probability(axes: "Axes", row: Affordance) -> None:
+def _write_probability(axes: Axes, row: Affordance) -> None:
     """Write the replication probability as the paper does, and as numbers."""
     counts = f"{row.times_successful} / {row.times_used}"
     axes.text(
@@ -112,13 +109,13 @@ def _write_probability(axes: "Axes", row: Affordance) -> None:
         _write_below(axes, "excluded: not", "greater than 1/2")
 
 
-def _write(axes: "Axes", *lines: str) -> None:
+def _write(axes: Axes, *lines: str) -> None:
     """Write lines into the middle of a cell."""
     words = "\n".join(lines)
     axes.text(0.5, 0.55, words, transform=axes.transAxes, ha="center", va="center", fontsize=8.0)
 
 
-def _write_below(axes: "Axes", *lines: str) -> None:
+def _write_below(axes: Axes, *lines: str) -> None:
     """Write lines below a cell's drawing."""
     axes.set_xlabel("\n".join(lines), fontsize=6.5)
 

@@ -1,7 +1,9 @@
 """The tools to scale, with the names of their parts, and one that broke (Figs. 1 and 9)."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from affcli.core.geometry import Point
 from affcli.core.tool import PUCK_COLOR, Color, Tool, ToolPart
@@ -9,10 +11,6 @@ from affcli.report.figures.canvas import INK, TWO_COLUMNS, canvas
 from affcli.report.figures.maps import fit_maps, map_panels
 from affcli.report.figures.things import draw_length, draw_parts, draw_puck, round_length
 from affcli.report.figures.words import shown, tool_words
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 MOST_BESIDE = 7
 """Things in a row of the page."""
@@ -24,7 +22,7 @@ SMALL = 6.0
 """Size of the letters beside the parts (points)."""
 
 
-def tools_figure(tools: Sequence[Tool], broken: tuple[Tool, Tool], puck_radius: float) -> "Figure":
+def tools_figure(tools: Sequence[Tool], broken: tuple[Tool, Tool], puck_radius: float) -> Figure:
     """Return the attractor and all tools side by side, and one that broke.
 
     All to scale. Each part is named on the first tool that has it.
@@ -62,14 +60,14 @@ def tools_figure(tools: Sequence[Tool], broken: tuple[Tool, Tool], puck_radius: 
     return figure
 
 
-def _draw_attractor(axes: "Axes", radius: float) -> None:
+def _draw_attractor(axes: Axes, radius: float) -> None:
     """Draw the attractor, and over it how long some inches are."""
     axes.set_xlabel("attractor")
     draw_puck(axes, Point(0.0, radius), radius, color=_paint(PUCK_COLOR))
     draw_length(axes, Point(0.0, 3.0 * radius), round_length(4.0 * radius))
 
 
-def _mark_grasp_point(axes: "Axes", name: str) -> None:
+def _mark_grasp_point(axes: Axes, name: str) -> None:
     """Mark where the tool is grasped, on a tool of any colour."""
     axes.plot([0.0], [0.0], "o", markersize=3.0, color="white", markeredgecolor=INK, zorder=6)
     axes.annotate(
@@ -77,7 +75,7 @@ def _mark_grasp_point(axes: "Axes", name: str) -> None:
     )
 
 
-def _name_part(axes: "Axes", part: ToolPart, name: str) -> None:
+def _name_part(axes: Axes, part: ToolPart, name: str) -> None:
     """Write the name of a part where there is room: above bars, below hooks, beside handles."""
     left, bottom, right, top = part.outline.bounds
     place, away = (0.5 * (left + right), bottom), (0.0, -2.0)

@@ -13,6 +13,7 @@ from matplotlib.patches import Circle, Patch
 
 from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Movement
+from affcli.core.records import StoredStep
 from affcli.report.figures.arrows import Arrow, Look, draw_arrows
 from affcli.report.figures.canvas import (
     BLUE,
@@ -30,7 +31,7 @@ from affcli.report.figures.canvas import (
 from affcli.report.figures.key import draw_key
 from affcli.report.figures.maps import fit_maps, map_panels
 from affcli.report.figures.things import draw_goal, draw_grasp, draw_parts, draw_puck, draw_table
-from affcli.report.film import COLUMNS, FilmedStep, FilmedTrial, Shown, take_title, take_verdict
+from affcli.report.film import COLUMNS, FilmedTrial, Shown, take_title, take_verdict
 
 BEFORE, AFTER = "#b4b4b4", "#6e6e6e"
 """Outlines of the tool before and after a behavior."""
@@ -98,7 +99,7 @@ def _draw_tool(axes: Axes, trial: FilmedTrial, wrist: Pose) -> None:
     draw_grasp(axes, wrist)
 
 
-def _draw_step(axes: Axes, trial: FilmedTrial, step: FilmedStep) -> None:
+def _draw_step(axes: Axes, trial: FilmedTrial, step: StoredStep) -> None:
     """Draw one step."""
     outline = AFTER if step.blocked else BEFORE
     # A tool that could not be lowered is held over the table: nothing of it is filled.
@@ -110,16 +111,16 @@ def _draw_step(axes: Axes, trial: FilmedTrial, step: FilmedStep) -> None:
     else:
         _draw_tool(axes, trial, step.wrist_end)
     if step.moved:
-        draw_puck(axes, step.puck_start, trial.puck_radius, before=True, color=INK)
-    draw_puck(axes, step.puck_end, trial.puck_radius)
+        draw_puck(axes, step.attractor_start, trial.puck_radius, before=True, color=INK)
+    draw_puck(axes, step.attractor_end, trial.puck_radius)
     # The path leads through the steps that have no panel, too.
     so_far = [s for s in trial.steps if s.number <= step.number]
-    path = [trial.puck, *(p for s in so_far for p in (s.puck_start, s.puck_end))]
+    path = [trial.puck, *(p for s in so_far for p in (s.attractor_start, s.attractor_end))]
     axes.plot(*zip(*path, strict=True), **PATH, zorder=4)
-    draw_arrows(axes, [_arrow(step.puck_start, step.expected)], EXPECTED, HEADS[0])
+    draw_arrows(axes, [_arrow(step.attractor_start, step.expected)], EXPECTED, HEADS[0])
     if step.moved:
         length = min(HEADS[1], SEEN_HEAD * step.seen.distance)
-        draw_arrows(axes, [_arrow(step.puck_start, step.seen)], SEEN, length)
+        draw_arrows(axes, [_arrow(step.attractor_start, step.seen)], SEEN, length)
 
 
 def _arrow(start: Point, movement: Movement) -> Arrow:
@@ -127,7 +128,7 @@ def _arrow(start: Point, movement: Movement) -> Arrow:
     return start, Point(start.x + movement.dx, start.y + movement.dy)
 
 
-def _write_over(axes: Axes, take: Sequence[FilmedStep]) -> None:
+def _write_over(axes: Axes, take: Sequence[StoredStep]) -> None:
     """Write over a panel which steps it shows and what came of them; mark a row that is lost."""
     # The empty line leaves room for the other two titles, which stand side by side.
     axes.set_title(f"{take_title(take)}\n", loc="left", fontsize=SMALL, fontweight="bold")

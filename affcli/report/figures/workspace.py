@@ -2,8 +2,9 @@
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Circle
 
 from affcli.core.geometry import Pose
@@ -22,10 +23,6 @@ from affcli.report.figures.things import (
 )
 from affcli.simulation.arm import Reach
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
 MARGIN = 1.0
 """Room around all that is drawn (in of the table)."""
 BASE_RADIUS = 1.6
@@ -36,7 +33,7 @@ ASPECTS = 0.5, 1.5
 
 def workspace_figure(
     workspace: Workspace, tool: Tool, reach: Reach, tasks: Sequence[Task]
-) -> "Figure":
+) -> Figure:
     """Return the table from above: goals, starts, the tool at its start, the bare arm's reach.
 
     The arm of the default settings reaches to 0.04 in from its middle: only the outer bound shows.
@@ -68,7 +65,7 @@ def workspace_figure(
     return figure
 
 
-def _draw_arm(axes: "Axes", reach: Reach) -> None:
+def _draw_arm(axes: Axes, reach: Reach) -> None:
     """Draw the arm's base and, dashed, the bounds of its reach without a tool."""
     half = math.degrees(reach.waist_max)
     # An inner bound of next to nothing would be a speck on the base.
