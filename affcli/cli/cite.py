@@ -7,6 +7,7 @@ import typer
 
 from affcli.cli.database import opened
 from affcli.cli.terminal import show_text
+from affcli.core.records import LearningRunInfo, SessionInfo
 from affcli.report.citation import bibtex
 
 
@@ -28,9 +29,8 @@ def cite(
     With a database the software's entry says which versions, in which world, its learning runs and
     trials were made with.
     """
-    made_with = []
+    records: list[LearningRunInfo | SessionInfo] = []
     if database is not None:
         with opened(database) as store:
             records = [*store.learning.runs(), *store.sessions.all()]
-        made_with = [{**one.versions, "world": str(one.spec.world)} for one in records]
-    show_text(bibtex(made_with))
+    show_text(bibtex({**one.versions, "world": str(one.spec.world)} for one in records))
