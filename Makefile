@@ -34,15 +34,22 @@ INSTALLED_BROWSER := $(VENV)/.installed-browser
 help:
 	@sed -n 's/^## /make /p' $(firstword $(MAKEFILE_LIST))
 
-## demo          learn a tool, use it, break it and report, in a fresh demo.db
+## demo          learn a tool, use it, break it, in a fresh demo.db and a page demo.html
 demo: $(INSTALLED)
-	@rm -f demo.db demo.db-wal demo.db-shm demo.db-journal
-	AFFCLI_DB=demo.db $(AFFCLI) learn --tool t-hook
-	AFFCLI_DB=demo.db $(AFFCLI) solve --goal 2
-	AFFCLI_DB=demo.db $(AFFCLI) break-tool
-	AFFCLI_DB=demo.db $(AFFCLI) report
-	@printf '\nThe database: %s\nA query to try:\n  %s\n' '$(CURDIR)/demo.db' \
-	  '$(AFFCLI) sql --db demo.db "select exploratory_behavior, exploratory_params, round(movement, 1) as inches, round(direction) as degrees, times_successful, times_used from affordance_table order by times_used desc limit 5"'
+	@rm -f demo.db demo.db-wal demo.db-shm demo.db-journal demo.html
+	@echo 'A robot babbles with a T-hook for an hour of its time:'
+	@$(call picked,learn --tool t-hook,/^learned /p)
+	@echo 'It brings the puck over goal 2:'
+	@$(call picked,solve --goal 2,/^tool /p; /^t-hook /p)
+	@echo 'Its tool breaks, and it does all 16 tasks with the broken and with the whole one:'
+	@$(call picked,break-tool,/^16 trials/p; /^solved  /p; /^tries on lost/p)
+	@$(call picked,report --html demo.html,)
+	@printf '%s\n' 'Database: $(CURDIR)/demo.db' 'Page, to look at in a browser: $(CURDIR)/demo.html' \
+	  'Try next, to see why it chose each row: $(AFFCLI) replay 11 --db demo.db'
+
+# Run a command of the demo and show the lines that sed picks; all it said when it fails.
+picked = said=`COLUMNS=80 $(AFFCLI) $(1) --db demo.db 2>&1` || { printf '%s\n' "$$said" >&2; exit 1; }; \
+  printf '%s\n' "$$said" | sed -n '$(2)'
 
 ## quick         the tests of what robots do and of what is said of it, in a minute; no processes
 quick: $(INSTALLED_DEV)
@@ -83,10 +90,10 @@ reproduce: $(INSTALLED)
 bench: $(INSTALLED)
 	$(VENV)/bin/python experiments/speed/bench.py --json bench.json
 
-## clean         remove .venv, caches, build products and demo.db; every other database stays
+## clean         remove .venv, caches, build products, demo.db and demo.html; other databases stay
 clean:
 	rm -rf $(VENV) build dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
-	rm -f demo.db demo.db-wal demo.db-shm demo.db-journal
+	rm -f demo.db demo.db-wal demo.db-shm demo.db-journal demo.html
 	find affcli migrations tests experiments -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # One line that says why PYTHON cannot make the environment; empty when it can.
@@ -106,18 +113,23 @@ endif
 
 $(MADE):
 	@$(if $(PYTHON_PROBLEM),$(error $(PYTHON_PROBLEM)))
-	'$(PYTHON)' -m venv --clear $(VENV)
+	@echo 'Making a Python environment in $(VENV) ...' >&2
+	@'$(PYTHON)' -m venv --clear $(VENV)
 	@printf '%s\n' '$(CURDIR)' > $@
 
+comma := ,
+install = @echo 'Installing $(1) into $(VENV); the first time this takes a minute or two ...' >&2; \
+  $(PIP) install -q -c requirements.lock -e '.[$(2)]'
+
 $(INSTALLED): $(MADE) pyproject.toml requirements.lock
-	$(PIP) install -q -c requirements.lock -e '.[camera,figures]'
+	$(call install,affcli and the libraries it needs,camera$(comma)figures)
 	@touch $@
 
 # What check and test need includes what demo needs.
 $(INSTALLED_DEV): $(MADE) pyproject.toml requirements.lock
-	$(PIP) install -q -c requirements.lock -e '.[dev]'
+	$(call install,what the tests and checks need,dev)
 	@touch $(INSTALLED) $@
 
 $(INSTALLED_BROWSER): $(MADE) pyproject.toml requirements.lock
-	$(PIP) install -q -c requirements.lock -e '.[dev,browser]'
+	$(call install,what the browser tests need,dev$(comma)browser)
 	@touch $(INSTALLED) $(INSTALLED_DEV) $@

@@ -8,7 +8,7 @@ from typer.core import TyperCommand, TyperGroup
 
 from affcli import __version__
 from affcli.cli.commands import SECTIONS, Command, Group
-from affcli.cli.terminal import say, show_text
+from affcli.cli.terminal import show_text
 from affcli.errors import UsageError
 
 
@@ -41,10 +41,13 @@ class CommandGroup(TyperGroup):
     """A word with commands under it, which says what they are when none was given."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Refuse to go on without a command: its help on stderr, and a usage error (2)."""
-        if not args:
-            say(ctx.get_help())
-            raise typer.Exit(UsageError.exit_code)
+        """Show the help on stdout when there is no command: it is what was asked for.
+
+        The shell's completion parses words too, and wants no help.
+        """
+        if not args and not ctx.resilient_parsing:
+            show_text(f"{ctx.get_help()}\n")
+            raise typer.Exit
         return super().parse_args(ctx, args)
 
 
@@ -66,7 +69,6 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
-    add_completion=False,
 )
 
 

@@ -159,6 +159,7 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
         Command("sql", "sql:sql", "Ask the database one question in SQL."),
         DB,
         Command("doctor", "doctor:doctor", "Say whether all is here that affcli needs."),
+        Command("cite", "cite:cite", "Say how to cite the paper and this software, in BibTeX."),
     ),
     "Extend": (
         Command(

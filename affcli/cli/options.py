@@ -112,6 +112,11 @@ def check_count(option: str, most: int = LARGEST_ID) -> Callable[[Any], Any]:
     return check_if_given(lambda count: checked_count(option, count, most))
 
 
+def names_of(kind: Kind) -> Callable[[str], list[str]]:
+    """Return what a shell completes an option that takes a part with."""
+    return lambda incomplete: [n for n in registry.parts(kind) if n.startswith(incomplete)]
+
+
 # readable=False: whether a file can be read is for those to say who read it, with their exit code.
 Database = Annotated[
     Path,
@@ -147,15 +152,26 @@ Repertoire = Annotated[
         "--repertoire",
         help="Exploratory behaviors; several times for several (default: paper).",
         metavar=PART,
+        autocompletion=names_of("behaviors"),
     ),
 ]
 Binding = Annotated[
     str | None,
-    typer.Option("--binding", help="How the tool is held (default: grasp).", metavar=PART),
+    typer.Option(
+        "--binding",
+        help="How the tool is held (default: grasp).",
+        metavar=PART,
+        autocompletion=names_of("bindings"),
+    ),
 ]
 Explorer = Annotated[
     str | None,
-    typer.Option("--explorer", help="What to try next (default: random).", metavar=PART),
+    typer.Option(
+        "--explorer",
+        help="What to try next (default: random).",
+        metavar=PART,
+        autocompletion=names_of("explorers"),
+    ),
 ]
 World = Annotated[str | None, typer.Option("--world", help="Where (default: table).", metavar=PART)]
 Planner = Annotated[
@@ -164,6 +180,7 @@ Planner = Annotated[
         "--planner",
         help="How the robot chooses a row.",
         metavar=PART,
+        autocompletion=names_of("planners"),
         parser=checked_part("planners"),
     ),
 ]
@@ -203,11 +220,17 @@ Tools = Annotated[
         help="A tool; give it several times for several.",
         metavar="NAME",
         callback=checked_tools,
+        autocompletion=names_of("tools"),
     ),
 ]
 LearnedTool = Annotated[
     str | None,
-    typer.Option("--tool", help="What was learned (default: t-hook).", metavar="NAME"),
+    typer.Option(
+        "--tool",
+        help="What was learned (default: t-hook).",
+        metavar="NAME",
+        autocompletion=names_of("tools"),
+    ),
 ]
 DEFAULT_TOOL = "t-hook"
 Becomes = Annotated[str, typer.Option("--becomes", help="The tool that is left.", metavar="NAME")]

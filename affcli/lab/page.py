@@ -137,7 +137,6 @@ def _latest(trials: Iterable[TrialInfo], runs: Sequence[int]) -> list[TrialInfo]
         spec = trial.spec
         kind = (spec.protocol, spec.tool, spec.shape, spec.task.task_set, spec.goal, spec.start)
         by_kind[(*kind, str(spec.planner))] = trial
-    tools = [*tools, *sorted({trial.spec.tool for trial in by_kind.values()} - {*tools})]
     goals = in_order(trial.spec.goal for trial in by_kind.values())
     starts = in_order(trial.spec.start for trial in by_kind.values())
 

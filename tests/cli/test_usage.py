@@ -157,12 +157,11 @@ def test_a_strange_name_is_one_printable_line(name: str | bytes, learned: Path) 
 
 
 @pytest.mark.parametrize("args", [(), ("db",)], ids=["affcli", "affcli db"])
-def test_without_a_command_it_says_which_there_are(args: tuple[str, ...], tmp_path: Path) -> None:
+def test_without_a_command_it_shows_its_help(args: tuple[str, ...], tmp_path: Path) -> None:
     ended = affcli(*args, cwd=tmp_path)
-    assert ended.code == 2
-    assert ended.out == ""
-    assert "Usage: " in ended.err
-    assert ended.err == affcli(*args, "--help", cwd=tmp_path).out
+    assert (ended.code, ended.err) == (0, "")
+    assert ended.out.startswith("Usage: affcli ")
+    assert ended.out == affcli(*args, "--help", cwd=tmp_path).out
 
 
 def test_help_and_version_are_results(tmp_path: Path) -> None:

@@ -1,0 +1,57 @@
+"""How to cite the paper and this software, in BibTeX.
+
+`CITATION.cff` says the same of the software to GitHub and Zenodo; it is not in the wheel.
+"""
+
+from collections.abc import Iterable, Mapping
+
+from affcli import __version__
+from affcli.errors import one_line
+
+PAPER = {
+    "author": "Stoytchev, Alexander",
+    "title": "Learning the Affordances of Tools Using a Behavior-Grounded Approach",
+    "booktitle": "Towards Affordance-Based Robot Control",
+    "series": "Lecture Notes in Artificial Intelligence",
+    "volume": "4760",
+    "publisher": "Springer",
+    "year": "2008",
+}
+SOFTWARE = {
+    "author": "{affcli contributors}",
+    "title": "affcli: a command-line lab for learning the affordances of tools",
+    "version": __version__,
+    "year": "2026",
+}
+SPECIAL = "\\{}$&#%_^~"
+"""Characters that mean something to TeX; a version or a name is written without them."""
+
+
+def bibtex(made_with: Iterable[Mapping[str, str]] = ()) -> str:
+    """Return the two entries.
+
+    Args:
+        made_with: names and versions of what results were made with; each set of them stands once
+            in the note of the software's entry.
+    """
+    sets = dict.fromkeys(
+        ", ".join(f"{_plain(name)} {_plain(version)}" for name, version in one.items())
+        for one in made_with
+    )
+    note = {"note": f"Results made with {'; and with '.join(sets)}"} if sets else {}
+    return "\n".join(
+        (
+            _entry("incollection", "stoytchev2008affordances", PAPER),
+            _entry("software", "affcli", {**SOFTWARE, **note}),
+        )
+    )
+
+
+def _entry(kind: str, key: str, fields: Mapping[str, str]) -> str:
+    lines = [f"  {name} = {{{value}}}," for name, value in fields.items()]
+    return "\n".join([f"@{kind}{{{key},", *lines, "}\n"])
+
+
+def _plain(text: str) -> str:
+    """Return text from a database without what TeX would take for a command."""
+    return "".join(" " if letter in SPECIAL else letter for letter in one_line(text, 60))
