@@ -26,6 +26,7 @@ from affcli.core.observation import Observation
 from affcli.core.task import GoalRegion
 from affcli.core.tool import Color
 from affcli.core.trial import BabblingRecord
+from affcli.errors import BadInputError
 from tests.factories import TOOL_COLOR, observation
 
 Effect = Callable[[BehaviorCall], tuple[float, float]]
@@ -109,7 +110,7 @@ class FakeRobot:
     def execute(self, call: BehaviorCall, seen: Observation | None) -> Execution:
         known = self.repertoire is None or call in self.repertoire
         if not known and call.name not in (POSITION_WRIST, GRASP):
-            raise KeyError(call)
+            raise BadInputError(f"{call}: not in the repertoire")
         self.executed.append((call, seen))
         start, status = self.table.wrist, ExecutionStatus.DONE
         if call.name == POSITION_WRIST:

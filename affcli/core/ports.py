@@ -50,7 +50,7 @@ class Robot(Protocol):
             seen: the latest observation; position wrist aims by it. None before the first one.
 
         Raises:
-            KeyError: no such behavior in the repertoire.
+            BadInputError: no such behavior in the repertoire; nothing is changed.
             SimulationDivergedError: the world gave a number that is not finite.
         """
 

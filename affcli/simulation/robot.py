@@ -98,12 +98,13 @@ class SimulatedRobot:
         """Return the motion of a grasp or of an exploratory behavior; BadInputError for another."""
         if call.name == GRASP:
             return self._take(call)
-        if call not in self._motions:
+        motion = self._motions.get(call)
+        if motion is None:
             raise BadInputError(
                 f"{one_line(call, 60)}: this robot has no such behavior; install the affcli that "
                 "made the record"
             )
-        return self._motions[call]
+        return motion
 
     def _take(self, call: BehaviorCall) -> Motion:
         """Take the tool as a grasp says; return the motion, which is a wait."""

@@ -11,6 +11,7 @@ from affcli.core.behavior import BehaviorCall, BehaviorName, Execution, Executio
 from affcli.core.geometry import Point
 from affcli.core.observation import Observation
 from affcli.core.ports import Robot, Sensor
+from affcli.errors import BadInputError
 
 NO_SUCH = BehaviorCall.of(BehaviorName("stand on its head"), {})
 TICK = 1e-9
@@ -109,7 +110,7 @@ class RobotContract:
     ) -> None:
         executed(robot, binding, None)
         before = robot.clock, robot.wrist, robot.holding
-        with pytest.raises(KeyError):
+        with pytest.raises(BadInputError):
             robot.execute(NO_SUCH, seen)
         assert (robot.clock, robot.wrist, robot.holding) == before
 
