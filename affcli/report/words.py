@@ -104,8 +104,11 @@ def settings_words(settings: str) -> str:
 
 
 def parts_words(spec: LearningSpec | SessionSpec) -> str:
-    """Return the parts of a run that are not the paper's: ``binding grasp 3``; empty for none."""
-    return ", ".join(f"{kind} {one_line(text)}" for kind, text in other_parts(spec).items())
+    """Return the parts of a run that are not the paper's: ``binding grasp 3 15 deg``; empty for none."""
+    parts = other_parts(spec)
+    if "binding" in parts:
+        parts["binding"] = call_words(spec.binding)
+    return ", ".join(f"{kind} {one_line(text)}" for kind, text in parts.items())
 
 
 def run_words(spec: LearningSpec | SessionSpec) -> str:

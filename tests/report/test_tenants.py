@@ -23,7 +23,7 @@ from affcli.report.trials import explain_trial, solve_table, trial_json
 from tests.report import tenants
 from tests.report.drawn import drawn
 from tests.report.hand_made import spec, stored_row, tried
-from tests.report.hand_made_page import data_in
+from tests.report.hand_made_page import WHOLE_TRIAL, data_in
 from tests.report.tenants import CONTENT, LEARNED, OTHERWISE, OVERVIEW, REPRODUCTION, RUNS
 
 COMMAND = "affcli report --db many.db --html many.html"
@@ -196,3 +196,12 @@ def test_an_unknown_tool_is_named_and_the_rest_is_drawn() -> None:
     shown = run_shown(tenants.info(7), list(tenants.SPOONS.rows.values()), 1.5)
     assert shown.title.endswith("not drawn, for this affcli does not know the shape: spoon")
     assert shown.views[0].parts == ()
+
+
+def test_a_robot_that_grasped_otherwise_is_not_put_beside_the_paper() -> None:
+    """Its tool, goal and planner are the paper's, its grasp is not."""
+    held = replace(LEARNED.run, id=1, spec=replace(LEARNED.run.spec, held=WHOLE_TRIAL.spec.held))
+    content = replace(CONTENT, tools=[replace(LEARNED, run=held)], replays=[WHOLE_TRIAL], broken=[])
+    page = render(content, COMMAND)
+    single = page.split('aria-label="One robot"')[1].split("</table>")[0]
+    assert (single.count("1/1"), single.count("paper&nbsp;")) == (1, 0)

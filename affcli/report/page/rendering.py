@@ -9,9 +9,15 @@ from markupsafe import Markup
 
 from affcli import __version__
 from affcli.analysis.breaking import missing_side
-from affcli.analysis.paper import BROKEN_TRIALS, GOALS, PLANNER, TRIALS, papers_successes
+from affcli.analysis.paper import (
+    BROKEN_TRIALS,
+    GOALS,
+    PLANNER,
+    TRIALS,
+    other_parts,
+    papers_successes,
+)
 from affcli.analysis.statistics import ENOUGH_ROBOTS
-from affcli.core.replay import Replay
 from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome
 from affcli.errors import one_line
@@ -100,7 +106,7 @@ def _source(pages: Environment, name: str) -> Markup:
 
 def _results(content: Content) -> dict[str, Any]:
     """Return what the section of results shows."""
-    single_goals, single = _single(content.replays)
+    single_goals, single = _single(content)
     shared = {"single": single, "single_goals": single_goals}
     if content.reproduction is None:
         ends = Counter(r.end.outcome.value for r in content.replays if r.end is not None)
@@ -130,14 +136,15 @@ def _results(content: Content) -> dict[str, Any]:
     }
 
 
-def _single(replays: Sequence[Replay]) -> tuple[list[str], list[tuple[str, list[dict[str, Any]]]]]:
+def _single(content: Content) -> tuple[list[str], list[tuple[str, list[dict[str, Any]]]]]:
     """Return the goals, and for each tool what one robot solved and tried of each of them."""
     ended = [
         replay
-        for replay in replays
+        for replay in content.replays
         if replay.end is not None and replay.spec.protocol is Protocol.EXTENSION_OF_REACH
     ]
     goals = in_order(replay.spec.goal for replay in ended)
+    as_the_paper = {one.run.id for one in content.tools if not other_parts(one.run.spec)}
     rows: dict[str, dict[str, dict[str, Any]]] = {}
     for replay in ended:
         spec = replay.spec
@@ -146,7 +153,7 @@ def _single(replays: Sequence[Replay]) -> tuple[list[str], list[tuple[str, list[
         cell = cells.setdefault(spec.goal, {"solved": 0, "tried": 0})
         cell["solved"] += replay.end is not None and replay.end.outcome is Outcome.SOLVED
         cell["tried"] += 1
-        cell["paper"] = papers_successes(spec)
+        cell["paper"] = papers_successes(spec) if replay.run_id in as_the_paper else None
     none = {"solved": 0, "tried": 0, "paper": None}
     return goals, [
         (name, [cells.get(goal, none) for goal in goals]) for name, cells in rows.items()
