@@ -11,7 +11,7 @@ from affcli.core.affordance_table import AffordanceTable
 from affcli.core.records import AlikeRun, ChangedPart, LearningRunInfo, StepScene, StoredRow
 from affcli.core.replay import Difference
 from affcli.core.specs import LearningSpec, LearningStep, RowStarts
-from affcli.errors import UsageError
+from affcli.errors import DatabaseError, UsageError
 from affcli.store import reading, rows
 from affcli.store.comparing import by_number, differences
 from affcli.store.connection import Database, insert_many, insert_one, mappings, numbered
@@ -212,14 +212,22 @@ class Learning:
         """Return where the wrist and, truly, the attractor were when each row of a run was made.
 
         Empty for a world that does not tell where the attractor truly is.
+
+        Raises:
+            DatabaseError: behaviors that made rows are missing.
         """
         b = behavior.c
-        wanted = sa.select(behavior).where(
-            b.learning_run_id == run_id, b.change_detected == 1, b.true_start_x.is_not(None)
-        )
+        wanted = sa.select(behavior).where(b.learning_run_id == run_id, b.change_detected == 1)
+        made = self.database.mappings(wanted)
+        if len(made) < self.run(run_id).rows:
+            raise DatabaseError(
+                f"learning run {run_id} lacks behaviors that made its rows; restore a copy of the "
+                "database"
+            )
         return {
             row["step"]: (reading.pose(row, "wrist_start"), reading.pose(row, "true_start"))
-            for row in self.database.mappings(wanted)
+            for row in made
+            if row["true_start_x"] is not None
         }
 
     def scene(self, run_id: int, number: int) -> StepScene:

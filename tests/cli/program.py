@@ -81,7 +81,7 @@ def affcli(*args: Arg, cwd: Path | None = None, **env: str) -> Ended:
                 signal.signal(signum, handler)
         stdout.flush()
         stderr.flush()
-        return Ended(code, out.getvalue().decode(), err.getvalue().decode())
+        return Ended(code, *(text.getvalue().decode().replace("\r\n", "\n") for text in (out, err)))
 
 
 def done(*args: Arg, cwd: Path | None = None, **env: str) -> Ended:

@@ -95,5 +95,5 @@ def test_the_tables_stand_beside_the_paper(learned: Path) -> None:
 def test_it_becomes_another_shape(learned: Path) -> None:
     before = learned.read_bytes()
     line = refused(2, "break-tool", "--tool", "t-hook", "--becomes", "t-hook", "--db", learned)
-    assert "a broken t-hook must be another shape than it was" in line
+    assert "a broken t-hook must be another tool than it was" in line
     assert learned.read_bytes() == before

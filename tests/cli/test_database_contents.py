@@ -70,7 +70,7 @@ NAMES = {
 }
 HOSTILE = "<script>alert(1)</script>\u202e[/]\x1b[31m{{7*7}}"
 WORDS = {
-    "trial": "tool = ?1, goal = ?1, start = ?1, task_set = ?1, sensor = ?1, shape = ?1",
+    "trial": "tool = ?1, goal = ?1 || id, start = ?1, task_set = ?1, sensor = ?1, shape = ?1",
     "step": "placing_status = ?1, status = ?1",
     "affordance": "tool = ?1, exploratory_behavior = ?1, binding_behavior = ?1",
     "learning_run": "tool = ?1, sensor = ?1, binding_behavior = ?1, started_at = ?1",

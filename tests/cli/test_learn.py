@@ -56,6 +56,11 @@ def test_json_holds_the_same_and_nothing_else_is_on_stdout(tmp_path: Path) -> No
         "rows": made,
         "resets": resets,
         "robot_seconds": seconds,
+        "world": "table",
+        "sensor": "noisy",
+        "explorer": "random",
+        "binding": "grasp 1",
+        "repertoire": [f"{name} {inches}" for name in BEHAVIORS for inches in (2, 5)],
     }
 
 

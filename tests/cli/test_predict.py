@@ -66,8 +66,6 @@ def test_without_rows_there_is_nothing_to_predict_by(empty: Path, tmp_path: Path
 @pytest.mark.parametrize(
     ("args", "code", "says"),
     [
-        (("--tool", "fork"), 2, "no tool 'fork'"),
-        (("--shape", "[/]"), 2, "no tool '[/]'"),
         (("--pushes", "0"), 4, "--pushes 0: must lie in 1 to 100000"),
         (("--pushes", "9" * 25), 4, "must lie in 1 to 100000"),
         (("--seed", "-1"), 4, "--seed -1: must lie in 0 to 2^63 - 1"),

@@ -1,5 +1,6 @@
 """``affcli replay``: on a terminal and away from one, as JSON, and held against the record."""
 
+import json
 import signal
 import sqlite3
 import time
@@ -80,8 +81,7 @@ def test_some_steps_are_shown_alone(steps: str, shown: list[int], used: Path) ->
     assert ended.err == same(SOLVED, used)
 
 
-STEP = """SELECT number, affordance_id,
-rows_consistent, rows_probable, rows_reachable, rows_nearest,
+STEP = """SELECT number, affordance_id, reasons,
 expected_dx, expected_dy, seen_dx, seen_dy, replicated, lost,
 true_start_x, true_start_y, true_end_x, true_end_y,
 times_successful_before, times_used_before
@@ -92,7 +92,8 @@ def as_stored(step: dict[str, Any]) -> tuple[object, ...]:
     """Return a step of the JSON as the columns of STEP."""
     chosen = step["considered"][0]
     return (
-        *(step["step"], step["row"], *step["rows_left"].values(), *step["expected"], *step["seen"]),
+        *(step["step"], step["row"], json.dumps(step["reasons"], separators=(",", ":"))),
+        *(*step["expected"], *step["seen"]),
         *(step["replicated"], step["lost"], *step["true_start"][:2], *step["true_end"][:2]),
         *(chosen["times_successful"], chosen["times_used"]),
     )
@@ -235,9 +236,9 @@ CHANGED = {
         "step 3 (not in the record), step 9 (not done again)",
     ),
     "the end": (f"update trial set steps = 7 where id = {SOLVED}", "the end (steps)"),
-    "searches of the end": (
-        f"update trial set last_rows_nearest = 3 where id = {SOLVED}",
-        "the end (last_rows_nearest)",
+    "reasons of the end": (
+        f"update trial set last_reasons = '[]' where id = {SOLVED}",
+        "the end (last_reasons)",
     ),
     "the seed": (
         f"update trial set seed = 99 where id = {SOLVED}",

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.program import affcli, names_in, one_printable_line, refused
+from tests.cli.program import affcli, names_in, refused
 from tests.cli.test_replay import SOLVED, altered
 
 LARGEST = str(2**63 - 1)
@@ -67,19 +67,18 @@ def test_numbers_that_no_record_has_are_bad_input(number: str, used: Path) -> No
         assert line.endswith(f"must lie in 1 to {LARGEST}")
 
 
-@pytest.mark.parametrize("steps", RANGES)
-def test_steps_are_a_number_or_two(steps: str, used: Path) -> None:
-    for what in ((SOLVED,), ("--run", "1")):
-        line = refused(4, "replay", *what, f"--steps={steps}", "--db", used)
+def test_steps_are_a_number_or_two(tmp_path: Path) -> None:
+    for steps in RANGES:
+        line = refused(4, "replay", "1", f"--steps={steps}", cwd=tmp_path)
         assert line.endswith("must be a number or two, as in 3-5")
 
 
-@pytest.mark.parametrize("speed", SPEEDS)
-def test_a_speed_lies_in_what_can_be_seen(speed: str, used: Path) -> None:
-    for what in ((SOLVED,), ("--run", "1"), (SOLVED, "--gif", "x.gif")):
-        line = refused(4, "replay", *what, "--speed", speed, "--db", used, cwd=used.parent)
-        assert line.endswith("must lie in 0.05 to 100")
-    assert names_in(used.parent) == [used.name]
+def test_a_speed_lies_in_what_can_be_seen(tmp_path: Path) -> None:
+    for speed in SPEEDS:
+        for what in (("1",), ("--run", "1"), ("1", "--gif", "x.gif")):
+            line = refused(4, "replay", *what, "--speed", speed, cwd=tmp_path)
+            assert line.endswith("must lie in 0.05 to 100")
+    assert names_in(tmp_path) == []
 
 
 def test_an_empty_database_has_nothing_to_replay(empty: Path) -> None:
@@ -103,106 +102,8 @@ def test_without_a_database_there_is_nothing_to_replay(what: str, tmp_path: Path
     assert names_in(tmp_path) == ["diary.db"]
 
 
-NEVER_WRITTEN = "holds a value that affcli did not write; restore a copy of the database"
-UNKNOWN = "holds a value that affcli did not write; restore a copy of the database"
-ROW = UNKNOWN
-
-HOSTILE = {
-    "tool": ("trial set tool = '<script>'", 3, UNKNOWN),
-    "markup": ("trial set shape = '[/]'", 3, UNKNOWN),
-    "escape sequence": ("trial set shape = char(27) || '[31mred'", 3, UNKNOWN),
-    "goal 9": ("trial set goal = 9", 3, UNKNOWN),
-    "goal 0": ("trial set goal = 0", 3, UNKNOWN),
-    "start": ("trial set start = -1", 3, UNKNOWN),
-    "seed": ("trial set seed = -1", 3, UNKNOWN),
-    "robot": ("trial set robot = -9223372036854775808", 3, UNKNOWN),
-    "sensor": ("trial set sensor = '<script>'", 3, NEVER_WRITTEN),
-    "protocol": ("trial set protocol = '[/]'", 3, NEVER_WRITTEN),
-    "counters": ("trial set counters = ''", 3, NEVER_WRITTEN),
-    "outcome": ("trial set outcome = 'won'", 3, NEVER_WRITTEN),
-    "no run": ("trial set learning_run_id = 99", 3, NEVER_WRITTEN),
-    "no session": ("trial set session_id = 99", 3, NEVER_WRITTEN),
-    "versions": ("session set versions = '{'", 3, NEVER_WRITTEN),
-    "settings": ("learning_run set settings = '{'", 4, "the stored settings: "),
-    "NaN": ('learning_run set settings = \'{"trial":{"max_steps":NaN}}\'', 4, "trial.max_steps"),
-    "NaN length": (
-        'learning_run set settings = \'{"puck":{"radius":NaN}}\'',
-        4,
-        "puck.radius = nan must lie in",
-    ),
-    "a script": (
-        "learning_run set settings = '{\"<script>\":1}'",
-        4,
-        "no section <script>; the sec",
-    ),
-    "settings of nothing": ("learning_run set settings = 'null'", 4, "no sections in them"),
-    "behavior": ("affordance set exploratory_behavior = '<script>'", 3, ROW),
-    "no parameter": ("affordance set exploratory_params = '{}'", 3, ROW),
-    "NaN parameter": ("affordance set exploratory_params = '{\"offset_distance\":NaN}'", 3, ROW),
-    "far parameter": ("affordance set exploratory_params = '{\"offset_distance\":1e300}'", 3, ROW),
-    "parameters": ("affordance set exploratory_params = '[]'", 3, NEVER_WRITTEN),
-    "infinite place": ("affordance set end_object_x = 9e999", 3, ROW),
-    "bright colour": ("affordance set start_tool_red = 1e308 where id = 3", 3, NEVER_WRITTEN),
-    "far place": ("affordance set start_wrist_to_object_y = -1e300", 3, ROW),
-}
-
-
-@pytest.mark.fault(21)
-@pytest.mark.fault(23)
-@pytest.mark.parametrize(("change", "code", "says"), HOSTILE.values(), ids=HOSTILE.keys())
-def test_a_trial_that_affcli_did_not_write_is_one_line(
-    change: str, code: int, says: str, used: Path
-) -> None:
-    where = f" where id = {SOLVED}" if change.startswith("trial") else ""
-    altered(used, f"update {change}{where}")
-    before = used.read_bytes()
-    for what in ((SOLVED,), (SOLVED, "--json"), ("--all",)):
-        ended = affcli("replay", *what, "--db", used)
-        assert (ended.code, ended.out) == (code, "")
-        assert says in one_printable_line(ended.err)
-    assert used.read_bytes() == before
-
-
-@pytest.mark.parametrize(
-    "change",
-    [
-        "update behavior set wrist_start_x = 9e999",
-        "update behavior set true_start_angle = 1e300",
-        "update behavior set change_detected = 0",
-        "delete from behavior",
-    ],
-)
-def test_without_where_a_row_was_made_it_is_not_known_whether_it_is_lost(
-    change: str, used: Path
-) -> None:
-    altered(used, change)
+def test_without_where_a_row_was_made_it_is_not_known_whether_it_is_lost(used: Path) -> None:
+    altered(used, "delete from behavior")
     line = refused(3, "replay", "21", "--db", used)
-    assert f" of learning run 1 {NEVER_WRITTEN}" in line
+    assert "learning run 1 lacks behaviors that made its rows; restore a copy" in line
     assert affcli("replay", SOLVED, "--db", used).code == 0
-
-
-RUN = "learning run 1 holds a value that affcli did not write; restore"
-HOSTILE_RUNS = {
-    "tool": ("tool = '<script>'", 3, RUN),
-    "escape sequence": ("tool = char(27) || '[31mred'", 3, RUN),
-    "seed": ("seed = -1", 3, RUN),
-    "robot": ("robot = -1", 3, RUN),
-    "behaviors": ("behaviors = -5", 3, RUN),
-    "settings": ('settings = \'{"arm":{"forearm":NaN}}\'', 4, "arm.forearm = nan must lie in"),
-    "versions": ("versions = '['", 3, NEVER_WRITTEN),
-    "checkpoint": ("checkpoint = '{'", 3, NEVER_WRITTEN),
-}
-
-
-@pytest.mark.parametrize(("change", "code", "says"), HOSTILE_RUNS.values(), ids=HOSTILE_RUNS.keys())
-def test_a_run_that_affcli_did_not_write_is_one_line(
-    change: str, code: int, says: str, learned: Path
-) -> None:
-    altered(learned, f"update learning_run set {change} where id = 1")
-    for what in ((), ("--json",), ("--steps", "1-2")):
-        ended = affcli("replay", "--run", "1", *what, "--db", learned)
-        if what == ("--steps", "1-2") and "behaviors" in change:
-            assert ended.code == 2
-            continue
-        assert (ended.code, ended.out) == (code, "")
-        assert says in one_printable_line(ended.err)

@@ -50,11 +50,11 @@ def test_after_solving_and_breaking(used: Path) -> None:
     value = done("report", "--json", "--db", used).json
     tried = {(cell["tool"], cell["goal"]): cell for cell in value["solved"]}
     assert {key: cell["tried"] for key, cell in tried.items()} == {
-        ("stick", 1): 4,
-        ("stick", 2): 4,
-        ("t-hook", 2): 4,
+        ("stick", "1"): 4,
+        ("stick", "2"): 4,
+        ("t-hook", "2"): 4,
     }
-    assert tried["stick", 1]["solved"] == 0
+    assert tried["stick", "1"]["solved"] == 0
     (broken,) = value["broken"]
     assert (broken["tool"], broken["shape"]) == ("t-hook", "l-hook")
     assert broken["broken"]["trials"] == broken["whole"]["trials"] == 16
@@ -83,19 +83,8 @@ def test_reading_changes_nothing(used: Path) -> None:
 def test_trials_through_different_sensors_are_told_apart(learned: Path) -> None:
     """One learned tool, tried through three sensors: nothing is pooled and nothing hidden."""
     for sensor in ("noisy", "exact", "camera"):
-        done(
-            "solve",
-            "--goal",
-            "3",
-            "--start",
-            "1",
-            "--tool",
-            "stick",
-            "--sensor",
-            sensor,
-            "--db",
-            learned,
-        )
+        one = ("solve", "--goal", "3", "--start", "1", "--tool", "stick")
+        done(*one, "--sensor", sensor, "--db", learned)
         done("break-tool", "--sensor", sensor, "--db", learned)
     overview = done("report", "--json", "--db", learned).json
     assert [one["sensor"] for one in overview["solved"]] == ["noisy", "exact", "camera"]

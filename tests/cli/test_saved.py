@@ -85,8 +85,9 @@ def traced(log: Path, *args: Arg) -> list[str]:
 @pytest.mark.fault(19)
 def test_a_commit_waits_for_file_and_folder(empty: Path) -> None:
     """As SQLite itself says, where no other program can look on: 3 is EXTRA."""
-    with open_store(empty, create=False, write=True) as store:
-        assert store.database.driver.execute("PRAGMA synchronous").fetchone() == (3,)
+    stored = open_store(empty, create=False, write=True)
+    with stored as store, store.database.reading() as connection:
+        assert connection.exec_driver_sql("PRAGMA synchronous").scalar() == 3
 
 
 def poor(bytes_: int, *args: Arg) -> Ended:

@@ -1,5 +1,6 @@
 """``affcli table list`` and ``show``: rows chosen and looked at."""
 
+import json
 import math
 from collections.abc import Callable
 from pathlib import Path
@@ -10,6 +11,7 @@ from rich.cells import cell_len
 
 from affcli.core.observation import Observation
 from affcli.core.tool import ToolName
+from affcli.errors import one_line
 from affcli.simulation.tools.paper import TOOL_PARTS
 from tests.cli.program import affcli, done, names_in, refused, rows
 from tests.cli.table_rows import EVIL, listed, tamper, vary_counters
@@ -262,7 +264,8 @@ def test_the_history_of_a_row_is_every_step_that_tried_it(used: Path) -> None:
     row_id = most_tried(used)
     shown = done("table", "show", str(row_id), "--json", "--db", used).json
     query = f"""SELECT trial_id AS trial, protocol, shape, goal, start, counters, number AS step,
-        placing_status, status, expected_dx, expected_dy, seen_dx, seen_dy, replicated,
+        planner, reasons, regrasped, placing_status, status,
+        expected_dx, expected_dy, seen_dx, seen_dy, replicated,
         times_successful_before, times_used_before, times_successful_after, times_used_after,
         died AS excluded, lost
         FROM step JOIN trial ON trial.id = trial_id WHERE affordance_id = {row_id}
@@ -271,6 +274,7 @@ def test_the_history_of_a_row_is_every_step_that_tried_it(used: Path) -> None:
     for step in stored:
         step["expected"] = [step.pop("expected_dx"), step.pop("expected_dy")]
         step["seen"] = [step.pop("seen_dx"), step.pop("seen_dy")]
+        step["reasons"] = json.loads(step["reasons"])
     assert shown["history"] == stored
     assert len(stored) > 2
     protocols = {step["protocol"] for step in stored}
@@ -357,7 +361,7 @@ def test_whatever_words_stand_in_the_database_they_command_nothing(text: str, us
             assert all(line.isprintable() for line in ended.out.splitlines())
         assert done("table", *args, "--json", "--db", used).json
     (first, *_) = listed(used, "--all-runs")
-    assert (first["tool"], first["behavior"]) == (text, text)
+    assert (first["tool"], first["behavior"]) == (one_line(text, 10_000),) * 2
     assert rows(used, "SELECT count(*) FROM affordance") != [(0,)]
 
 
