@@ -131,17 +131,5 @@ def session_spec(kind: str, run: LearningRunInfo, trial: TrialSpec) -> SessionSp
         run: whose table is used; of several the first.
         trial: one of its trials.
     """
-    learned = run.spec
-    return SessionSpec(
-        kind=kind,
-        seed=trial.seed,
-        robots=1,
-        world=trial.world,
-        repertoire=learned.repertoire,
-        binding=learned.binding,
-        explorer=learned.explorer,
-        planner=trial.planner,
-        sensor=trial.sensor,
-        settings=learned.settings,
-        task_set=trial.task.task_set,
-    )
+    parts = {**run.spec.carried(), "world": trial.world, "sensor": trial.sensor}
+    return SessionSpec(kind, trial.seed, 1, trial.planner, trial.task_set, **parts)

@@ -56,13 +56,8 @@ REASONS = (
 def session_spec(kind: str = "solve", *, seed: int = 0, robots: int = 1) -> SessionSpec:
     """Return a session by what the short learning runs carry."""
     run = learning_spec()
-    return SessionSpec(
-        *(kind, seed, robots, run.world, run.repertoire, run.binding, run.explorer),
-        planner=Component("nested-query"),
-        sensor=run.sensor,
-        settings=run.settings,
-        task_set="extension-of-reach",
-    )
+    planner = Component("nested-query")
+    return SessionSpec(kind, seed, robots, planner, "extension-of-reach", **run.carried())
 
 
 def begun(store: Store, kind: str = "solve", *, seed: int = 0, robots: int = 1) -> int:
