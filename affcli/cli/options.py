@@ -7,6 +7,7 @@ right. An option that only one command has stands in that command's file.
 import math
 import re
 from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,7 +17,6 @@ from affcli import registry
 from affcli.core.identity import Component
 from affcli.core.names import one_of
 from affcli.core.observation import SENSOR_KINDS, SensorKind
-from affcli.core.part import Kind
 from affcli.core.specs import LARGEST_SEED, LONGEST_HOURS
 from affcli.errors import BadInputError, one_line
 
@@ -31,8 +31,7 @@ FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 
 def checked_sensor(kind: str) -> SensorKind:
     """Return the kind of sensor asked for; UsageError when there is none such."""
-    known = one_of("sensor", kind, SENSOR_KINDS)
-    return next(one for one in SENSOR_KINDS if one == known)
+    return one_of("sensor", kind, SENSOR_KINDS)
 
 
 def checked_seed(seed: int) -> int:
@@ -97,11 +96,6 @@ def checked_tools(names: Iterable[str] | None) -> list[str]:
     return list(dict.fromkeys(map(checked_tool, single)))
 
 
-def checked_part(kind: Kind) -> Callable[[str], Component]:
-    """Return a check for an option that takes a part: ``name:key=value,key=value``."""
-    return lambda text: registry.component(kind, text)
-
-
 def check_if_given(check: Callable[[Any], Any]) -> Callable[[Any], Any]:
     """Return a check for an option that may be left out."""
     return lambda value: None if value is None else check(value)
@@ -164,7 +158,7 @@ Planner = Annotated[
         "--planner",
         help="How the robot chooses a row.",
         metavar=PART,
-        parser=checked_part("planners"),
+        parser=partial(registry.component, "planners"),
     ),
 ]
 DEFAULT_PLANNER = registry.DEFAULTS["planner"]
