@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 from affcli.core.specs import Counters
-from affcli.core.verification import Verdict
 from affcli.errors import DatabaseError
 from affcli.store import Store, check, open_store
 from tests.store.records import (
@@ -39,12 +38,12 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
                 steps.append(step)
                 row = counted(row, step.record)
             save_trial(store, session, run.id, spec, steps)
-        verification = store.verifications.begin(run.id, verification_spec(), VERSIONS, NOW)
+        tries = []
         for number in range(1, 5):
             record, truth = replication(row, number)
-            store.verifications.save(verification, record, truth, ids[row.step])
+            tries.append((record, truth, ids[row.step]))
             row = counted(row, record)
-        store.verifications.end(verification, Verdict.UNDECIDED, None, NOW)
+        store.verifications.save(run.id, verification_spec(), tries, VERSIONS, NOW, NOW)
     return path
 
 

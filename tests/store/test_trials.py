@@ -104,20 +104,22 @@ def test_a_trial_that_cannot_be_saved_leaves_the_counters(store: Store) -> None:
     assert store.trials.trials() == ()
 
 
-def test_a_try_and_the_counters_it_changes_are_saved_together(store: Store) -> None:
+def test_tries_and_the_counters_they_change_are_saved_together(store: Store) -> None:
     run = learned(store, 9)
     table, ids = store.learning.table(run.id)
     row = table.row(0)
-    verification = store.verifications.begin(run.id, verification_spec(), VERSIONS, NOW)
     record, truth = replication(row)
-    store.verifications.save(verification, record, truth, ids[row.step])
-    again, truth = replication(counted(row, record))
+    again, _ = replication(counted(row, record))
+    one, same = (record, truth, ids[row.step]), (again, truth, ids[row.step])
     with pytest.raises(DatabaseError, match="UNIQUE constraint failed: replication"):
-        store.verifications.save(verification, again, truth, ids[row.step])
+        store.verifications.save(run.id, verification_spec(), [one, same], VERSIONS, NOW, NOW)
+    assert counters_of(store) == [(1, 1)] * 3
+    store.verifications.save(run.id, verification_spec(), [one], VERSIONS, NOW, LATER)
     assert counters_of(store) == [(2, 2), (1, 1), (1, 1)]
     (tried,) = store.verifications.of_row(ids[row.step])
     assert (tried.shape, tried.before, tried.after) == ("l-hook", (1, 1), (2, 2))
-    assert value(store, "select world from verification") == "table"
+    kept = "select world, tries, uses_before, started_at, finished_at, verdict from verification"
+    assert run_sql(store.path, kept).rows == (("table", 1, 3, NOW, LATER, "undecided"),)
 
 
 def test_two_planners_and_any_goal_fit_into_a_session(store: Store) -> None:
