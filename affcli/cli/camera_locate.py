@@ -9,6 +9,7 @@ from affcli import lab
 from affcli.cli.options import AsJson
 from affcli.cli.terminal import show_either
 from affcli.report.camera import places_json, places_table
+from affcli.simulation.sensing import require_camera
 
 
 def locate(
@@ -37,6 +38,7 @@ def locate(
     The principal point is where the calibration found it. Both pictures must be taken alike: camera
     in its place, same zoom, crop and lens.
     """
+    require_camera()
     places = lab.photographs.locate_in_picture(image, calibration, colors)
     show_either(
         as_json=as_json,

@@ -1,7 +1,7 @@
 """``affcli camera view``: what the camera sees, and how it is segmented (§4, Figs. 3 and 4)."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -19,11 +19,9 @@ from affcli.cli.options import (
 )
 from affcli.cli.terminal import say
 from affcli.config import load_settings
+from affcli.core.records import StepScene
 from affcli.errors import UsageError, one_line
 from affcli.simulation.sensing import require_camera
-
-if TYPE_CHECKING:
-    from affcli.core.records import StepScene
 
 Out = Annotated[Path | None, typer.Option("--out", help="The picture, *.png.", metavar="FILE")]
 Video = Annotated[
@@ -136,7 +134,7 @@ def _check_where(out: Path | None, video: Path | None, *, force: bool) -> None:
 
 def _stored_scene(
     database: Path, trial: int | None, run: int | None, step: int
-) -> "StepScene | None":
+) -> StepScene | None:
     """Return a step of a trial or a behavior of a run from the database; None for neither."""
     if trial is None and run is None:
         return None

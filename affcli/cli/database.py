@@ -6,7 +6,6 @@ SQLAlchemy loads when the database is opened: a command's help does without.
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from affcli import registry, store
 from affcli.cli.options import DEFAULT_DATABASE, DEFAULT_TOOL
@@ -14,13 +13,10 @@ from affcli.cli.terminal import say
 from affcli.core.records import LearningRunInfo
 from affcli.errors import UsageError, one_line
 
-if TYPE_CHECKING:
-    from affcli.store import Store
-
 
 def opened(
     database: Path, *, create: bool = False, write: bool = False
-) -> "AbstractContextManager[Store]":
+) -> "AbstractContextManager[store.Store]":
     """Open a database, to read it if nothing else is said, and close it after the block.
 
     Args:
@@ -36,7 +32,7 @@ def opened(
 
 
 def learned_runs(
-    records: "Store", tool: str | None, database: Path, run: int | None = None
+    records: "store.Store", tool: str | None, database: Path, run: int | None = None
 ) -> list[LearningRunInfo]:
     """Return the learning runs whose tables are to be used.
 

@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from affcli import lab, registry
+from affcli import store as stores
 from affcli.cli.database import learned_runs, opened
 from affcli.cli.files import require_new, save
 from affcli.cli.options import (
@@ -36,9 +37,6 @@ from affcli.report import figures
 from affcli.report.curves import curves_title, robots_title
 from affcli.simulation.arm import reach_at
 from affcli.simulation.tasks.extension_of_reach import extension_of_reach
-
-if TYPE_CHECKING:
-    from affcli.store import Store
 
 OneTool = Annotated[
     str | None,
@@ -243,7 +241,7 @@ def save_figure(out: Path, figure: "figures.canvas.Drawing", title: str) -> None
 
 
 def _chosen_run(
-    store: "Store", run: int | None, tool: str | None, database: Path
+    store: "stores.Store", run: int | None, tool: str | None, database: Path
 ) -> LearningRunInfo:
     """Return a learning run, finished or not, or the latest finished one of a tool."""
     if run is not None:
@@ -259,7 +257,7 @@ def _chosen_run(
 
 
 def _runs_to_draw(
-    store: "Store", ids: Sequence[int], tools: Sequence[str], database: Path
+    store: "stores.Store", ids: Sequence[int], tools: Sequence[str], database: Path
 ) -> list[LearningRunInfo]:
     """Return learning runs, finished or not: those asked for, or all that stand for themselves."""
     if ids:

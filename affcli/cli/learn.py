@@ -1,10 +1,11 @@
 """``affcli learn``: a robot babbles with a tool for an hour and keeps what it saw (§6)."""
 
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from affcli import lab
+from affcli import store as stores
 from affcli.cli.database import opened
 from affcli.cli.options import (
     DEFAULT_DATABASE,
@@ -32,9 +33,6 @@ from affcli.core.specs import LearningSpec
 from affcli.errors import UsageError
 from affcli.report.learning import groups_json, groups_table, run_json, summary
 from affcli.simulation.tools.paper import TOOL_PARTS
-
-if TYPE_CHECKING:
-    from affcli.store import Store
 
 
 def learn(
@@ -114,7 +112,7 @@ def learn(
     )
 
 
-def _learn(store: "Store", spec: LearningSpec) -> "lab.learning.Learned":
+def _learn(store: "stores.Store", spec: LearningSpec) -> "lab.learning.Learned":
     """Run one learning run with progress on stderr; say what it gave."""
     for alike in lab.learning.made_by_other_defaults(store, spec):
         say(_in_words(alike))

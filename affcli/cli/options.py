@@ -7,6 +7,7 @@ right. An option that only one command has stands in that command's file.
 import math
 import re
 from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -31,8 +32,7 @@ FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 
 def checked_sensor(kind: str) -> SensorKind:
     """Return the kind of sensor asked for; UsageError when there is none such."""
-    known = one_of("sensor", kind, SENSOR_KINDS)
-    return next(one for one in SENSOR_KINDS if one == known)
+    return one_of("sensor", kind, SENSOR_KINDS)
 
 
 def checked_seed(seed: int) -> int:
@@ -95,11 +95,6 @@ def checked_tools(names: Iterable[str] | None) -> list[str]:
     """Return names of registered tools, each given by itself or several with commas, once each."""
     single = [part for name in names or () for part in name.split(",")]
     return list(dict.fromkeys(map(checked_tool, single)))
-
-
-def checked_part(kind: Kind) -> Callable[[str], Component]:
-    """Return a check for an option that takes a part: ``name:key=value,key=value``."""
-    return lambda text: registry.component(kind, text)
 
 
 def check_if_given(check: Callable[[Any], Any]) -> Callable[[Any], Any]:
@@ -181,7 +176,7 @@ Planner = Annotated[
         help="How the robot chooses a row.",
         metavar=PART,
         autocompletion=names_of("planners"),
-        parser=checked_part("planners"),
+        parser=partial(registry.component, "planners"),
     ),
 ]
 DEFAULT_PLANNER = registry.DEFAULTS["planner"]

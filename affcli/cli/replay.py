@@ -4,11 +4,12 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from affcli import lab
+from affcli import store as stores
 from affcli.cli.database import opened
 from affcli.cli.files import require_new, save
 from affcli.cli.options import (
@@ -45,9 +46,6 @@ from affcli.report.replaying import (
     trial_frames,
     verdict,
 )
-
-if TYPE_CHECKING:
-    from affcli.store import Store
 
 STEPWISE = 4.0
 """Times the robot's own speed at which a step is shown before the next is asked for."""
@@ -129,7 +127,7 @@ def _check_what(
 
 
 def _replay_trial(
-    store: "Store",
+    store: "stores.Store",
     trial: int,
     wanted: tuple[int, int] | None,
     speed: float | None,
@@ -187,7 +185,7 @@ def _show(parts: Iterable[Iterator[Frame]], count: int, speed: float | None) -> 
 
 
 def _replay_run(
-    store: "Store",
+    store: "stores.Store",
     run: int,
     wanted: tuple[int, int] | None,
     speed: float | None,
@@ -229,7 +227,7 @@ def _replay_run(
     return 1 if differences else 0
 
 
-def _replay_all(store: "Store", *, as_json: bool) -> int:
+def _replay_all(store: "stores.Store", *, as_json: bool) -> int:
     """Do every stored trial again; say how many equal their record."""
     trials = store.trials.trials()
     if not trials:

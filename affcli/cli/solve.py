@@ -20,7 +20,6 @@ from affcli.cli.options import (
 )
 from affcli.cli.terminal import now, show, show_either
 from affcli.core.task import ALL_STARTS
-from affcli.core.trial import StepRecord
 from affcli.report.trials import explain_trial, solve_table, trial_json
 
 
@@ -54,24 +53,19 @@ def solve(
     """
     wanted = lab.solving.WantedTasks(task, goal, start)
     trials: list[lab.solving.SolvedTrial] = []
-    steps: list[list[tuple[int, StepRecord]]] = [[]]
     with opened(database, write=True) as store:
         runs = learned_runs(store, tool, database, run)
-        for event in lab.solving.solve(store, runs, wanted, seed, now, planner, sensor):
-            if isinstance(event, lab.solving.SolvedStep):
-                steps[-1].append((event.row, event.record))
-                continue
-            trials.append(event)
-            steps.append([])
+        for one in lab.solving.solve(store, runs, wanted, seed, now, planner, sensor):
+            trials.append(one)
             if explain and not as_json:
-                show(explain_trial(event.trial, event.end, steps[-2]))
+                show(explain_trial(one.trial, one.end, one.steps))
     used = {one.spec.tool: one for one in runs}
     show_either(
         as_json=as_json,
         value=lambda: [
             {"trial": one.id, "run": used[one.trial.tool].id}
-            | trial_json(one.trial, one.end, taken if explain else None)
-            for one, taken in zip(trials, steps[:-1], strict=True)
+            | trial_json(one.trial, one.end, one.steps if explain else None)
+            for one in trials
         ],
         tables=lambda: [solve_table([(one.trial, one.end) for one in trials], used)],
     )

@@ -1,12 +1,14 @@
 """Which rows of the affordance tables a command is about: its options, and their checks."""
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from affcli import lab
+from affcli import store as stores
 from affcli.cli.database import learned_runs
 from affcli.cli.options import check_count
 from affcli.core.behavior import BehaviorCall
@@ -14,11 +16,6 @@ from affcli.core.names import one_of
 from affcli.core.records import LearningRunInfo
 from affcli.core.row_filter import Comparison, RowFilter
 from affcli.errors import BadInputError, UsageError, one_line
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from affcli.store import Store
 
 Tool = Annotated[
     str | None,
@@ -74,14 +71,14 @@ _BOUND = re.compile(rf"(<=|>=|<|>)\s*{_NUMBER}", re.ASCII)
 _BETWEEN = re.compile(rf"{_NUMBER}\s*\.\.\s*{_NUMBER}", re.ASCII)
 
 
-def _behavior(text: str, runs: "Sequence[LearningRunInfo]") -> BehaviorCall:
+def _behavior(text: str, runs: Sequence[LearningRunInfo]) -> BehaviorCall:
     """Return the exploratory behavior of this name that learning runs have."""
     calls = dict.fromkeys(one.call for run in runs for one in run.spec.repertoire)
     known = {str(call): call for named in calls for call in (BehaviorCall(named.name, ()), named)}
     return known[one_of("behavior", text, known)]
 
 
-def checked_probability(text: str) -> "tuple[tuple[Comparison, float], ...]":
+def checked_probability(text: str) -> tuple[tuple[Comparison, float], ...]:
     """Return the bounds that a text like ``<=0.5``, ``>0.5`` or ``0.2..0.8`` gives, both included.
 
     Raises:
@@ -103,7 +100,7 @@ def checked_probability(text: str) -> "tuple[tuple[Comparison, float], ...]":
 
 
 def chosen_rows(
-    store: "Store",
+    store: "stores.Store",
     database: Path,
     *,
     tool: str | None,
@@ -113,7 +110,7 @@ def chosen_rows(
     probability: str | None,
     region: str | None,
     limit: int | None,
-) -> "tuple[Sequence[LearningRunInfo], RowFilter]":
+) -> tuple[Sequence[LearningRunInfo], RowFilter]:
     """Return the learning runs whose rows are meant, and what the database can be asked for.
 
     It knows no regions. The run that was named, all runs, or the latest finished one of each tool;
@@ -145,8 +142,8 @@ def chosen_rows(
 
 
 def _runs(
-    store: "Store", database: Path, tool: str | None, run: int | None, *, all_runs: bool
-) -> "Sequence[LearningRunInfo]":
+    store: "stores.Store", database: Path, tool: str | None, run: int | None, *, all_runs: bool
+) -> Sequence[LearningRunInfo]:
     """Return the run that was named, all runs, or the latest finished one of each tool."""
     if run is not None:
         chosen = store.learning.run(run)

@@ -1,9 +1,10 @@
 """``affcli table export``: rows and records for other programs, as CSV, JSON or Parquet."""
 
 import io
+from collections.abc import Iterable, Sequence
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
@@ -28,10 +29,7 @@ from affcli.errors import BadInputError, UsageError, one_line
 from affcli.report.csv_table import csv_lines
 from affcli.report.json_table import json_lines
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-RELATIONS: "tuple[Relation, ...]" = ("rows", "behaviors", "trials", "steps")
+RELATIONS: tuple[Relation, ...] = ("rows", "behaviors", "trials", "steps")
 STDOUT = Path("-")
 
 
@@ -64,8 +62,7 @@ def export(
     All columns of the view affordance_wide, and the region: the part of the tool that the attractor
     was nearest to. Or all columns of the tables behavior, trial or step, for the same runs.
     """
-    known = one_of("kind of record", what, RELATIONS)
-    relation = next(one for one in RELATIONS if one == known)
+    relation = one_of("kind of record", what, RELATIONS)
     if relation != "rows" and (behavior, probability, region) != (None, None, None):
         raise UsageError(f"--behavior, --probability and --region choose rows: not --what {what}")
     if out != STDOUT:
@@ -118,17 +115,17 @@ def _checked_format(kind: str | None, out: Path) -> "lab.table.Write[bytes]":
     return FORMATS[form]
 
 
-def _csv(columns: "Sequence[Column]", rows: "Iterable[tuple[Any, ...]]") -> bytes:
+def _csv(columns: Sequence[Column], rows: Iterable[tuple[Any, ...]]) -> bytes:
     """Write CSV."""
     return _encoded(csv_lines([column.name for column in columns], rows))
 
 
-def _json(columns: "Sequence[Column]", rows: "Iterable[tuple[Any, ...]]") -> bytes:
+def _json(columns: Sequence[Column], rows: Iterable[tuple[Any, ...]]) -> bytes:
     """Write JSON."""
     return _encoded(json_lines([column.name for column in columns], rows))
 
 
-def _encoded(lines: "Iterable[str]") -> bytes:
+def _encoded(lines: Iterable[str]) -> bytes:
     """Return lines in UTF-8, without ever holding them all as Python text."""
     page = io.BytesIO()
     for line in lines:
@@ -136,7 +133,7 @@ def _encoded(lines: "Iterable[str]") -> bytes:
     return page.getvalue()
 
 
-def _parquet(columns: "Sequence[Column]", rows: "Iterable[tuple[Any, ...]]") -> bytes:
+def _parquet(columns: Sequence[Column], rows: Iterable[tuple[Any, ...]]) -> bytes:
     """Write Parquet."""
     return report.parquet_table.parquet_bytes(columns, rows)
 

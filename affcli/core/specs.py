@@ -5,7 +5,7 @@ later, a stored run can be shown, gone on with and done again.
 """
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import StrEnum
 from functools import cached_property
 from typing import Any
@@ -41,16 +41,11 @@ class Counters(StrEnum):
     """From the table as learned; the trial keeps its counters in its own steps."""
 
 
-@dataclass(frozen=True)
-class LearningSpec:
-    """What a learning run is a pure function of.
+@dataclass(frozen=True, kw_only=True)
+class Parts:
+    """What a learning run carries, but for the tool, the seed and the time.
 
     Args:
-        held: the tool, by value.
-        seed: 0 to 2^63 - 1.
-        robot: which of many robots that share the seed; 0 for the first.
-        hours: robot hours to babble for; None when `behaviors` is given.
-        behaviors: how many behaviors to execute; None when `hours` is given.
         settings: those that differ from the defaults, as canonical JSON (see `affcli.config`).
         world: where it takes place.
         repertoire: the exploratory behaviors, by value.
@@ -59,11 +54,6 @@ class LearningSpec:
         sensor: through what the robot sees.
     """
 
-    held: Tool
-    seed: int
-    robot: int
-    hours: float | None
-    behaviors: int | None
     settings: str
     world: Component
     repertoire: Repertoire
@@ -71,30 +61,59 @@ class LearningSpec:
     explorer: Component
     sensor: SensorKind
 
+    def carried(self) -> dict[str, Any]:
+        """Return the parts by name: to carry them on."""
+        return {field.name: getattr(self, field.name) for field in fields(Parts)}
+
+    @cached_property
+    def key(self) -> str:
+        """The key of the run or session: equal specs have equal keys in every version of affcli."""
+        return key_of(self.canonical())
+
+    def canonical(self) -> dict[str, Any]:
+        """Return all of it as JSON types; what a key is made of, so it must never change."""
+        return {
+            "binding": {"name": self.binding.name, "params": dict(self.binding.params)},
+            "explorer": self.explorer.canonical(),
+            "repertoire": repertoire_json(self.repertoire),
+            "sensor": self.sensor,
+            "settings": json.loads(self.settings),
+            "world": self.world.canonical(),
+        }
+
+
+@dataclass(frozen=True)
+class LearningSpec(Parts):
+    """What a learning run is a pure function of.
+
+    Args:
+        held: the tool, by value.
+        seed: 0 to 2^63 - 1.
+        robot: which of many robots that share the seed; 0 for the first.
+        hours: robot hours to babble for; None when `behaviors` is given.
+        behaviors: how many behaviors to execute; None when `hours` is given.
+    """
+
+    held: Tool
+    seed: int
+    robot: int
+    hours: float | None
+    behaviors: int | None
+
     @property
     def tool(self) -> str:
         """The name of the tool."""
         return self.held.name
 
-    @cached_property
-    def key(self) -> str:
-        """The key of the run: equal specs have equal keys in every version of affcli."""
-        return key_of(self.canonical())
-
     def canonical(self) -> dict[str, Any]:
-        """Return the spec as JSON types; what a key is made of, so it must never change."""
+        """Return the spec as JSON types; see `Parts`."""
         return {
+            **super().canonical(),
             "behaviors": self.behaviors,
-            "binding": {"name": self.binding.name, "params": dict(self.binding.params)},
-            "explorer": self.explorer.canonical(),
             "hours": self.hours,
-            "repertoire": repertoire_json(self.repertoire),
             "robot": self.robot,
             "seed": self.seed,
-            "sensor": self.sensor,
-            "settings": json.loads(self.settings),
             "tool": self.held.canonical(),
-            "world": self.world.canonical(),
         }
 
 
@@ -176,7 +195,7 @@ class VerificationSpec:
 
 
 @dataclass(frozen=True)
-class SessionSpec:
+class SessionSpec(Parts):
     """What a session of testing trials is a function of, beside the tables it starts from; a
     reproduction, which learns its own tables, is a function of nothing else.
 
@@ -184,44 +203,25 @@ class SessionSpec:
         kind: which command: ``solve``, ``break-tool`` or ``reproduce``.
         seed: of all it does.
         robots: how many; 1 unless it is a reproduction.
-        world, repertoire, binding, explorer: of its learning runs.
         planner: how the robots choose rows.
-        sensor: through what they see.
-        settings: those that differ from the defaults, as canonical JSON.
         task_set: the tasks, by the name of their set.
     """
 
     kind: str
     seed: int
     robots: int
-    world: Component
-    repertoire: Repertoire
-    binding: BehaviorCall
-    explorer: Component
     planner: Component
-    sensor: SensorKind
-    settings: str
     task_set: str
 
-    @cached_property
-    def key(self) -> str:
-        """The key of the session; equal specs have equal keys."""
-        return key_of(self.canonical())
-
     def canonical(self) -> dict[str, Any]:
-        """Return the spec as JSON types; what a key is made of, so it must never change."""
+        """Return the spec as JSON types; see `Parts`."""
         return {
-            "binding": {"name": self.binding.name, "params": dict(self.binding.params)},
-            "explorer": self.explorer.canonical(),
+            **super().canonical(),
             "kind": self.kind,
             "planner": self.planner.canonical(),
-            "repertoire": repertoire_json(self.repertoire),
             "robots": self.robots,
             "seed": self.seed,
-            "sensor": self.sensor,
-            "settings": json.loads(self.settings),
             "task_set": self.task_set,
-            "world": self.world.canonical(),
         }
 
 

@@ -2,22 +2,21 @@
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from affcli import registry
 from affcli.config import Settings, load_colors
 from affcli.core.geometry import Point
 from affcli.core.tool import Color
 from affcli.errors import BadInputError, one_line
-from affcli.simulation.sensing import eye_of, require_camera
-
-if TYPE_CHECKING:
-    from affcli.perception.calibration import Calibration
-    from affcli.perception.camera import Camera
-    from affcli.perception.camera_sensor import Eye
-    from affcli.perception.capture import Capture
-    from affcli.perception.location import Place
-    from affcli.perception.markers import Pattern
+from affcli.perception.calibration import OFF_CENTER, Calibration, calibrate
+from affcli.perception.camera import Camera, ImageSensor
+from affcli.perception.camera_sensor import Eye
+from affcli.perception.capture import Capture, checked_capture, orientation_for
+from affcli.perception.images import read_photograph, shrunk, unshrunk
+from affcli.perception.location import Place, places_of
+from affcli.perception.markers import Pattern, find_markers
+from affcli.perception.segmentation import Segmenter
+from affcli.simulation.sensing import eye_of
 
 SHOWN = "t-hook"
 """The tool in a picture that is of no run."""
@@ -25,23 +24,20 @@ LARGEST_FILE = 1_000_000
 """Bytes of a file of a calibration; one of 36 markers takes some 6,000."""
 
 
-def eye_at(settings: Settings, seed: int) -> "Eye":
+def eye_at(settings: Settings, seed: int) -> Eye:
     """Return a camera of these settings, and of robot 0, which may see the tool that is shown."""
     tool = registry.tool(SHOWN, settings.workspace.tools)
     return eye_of(settings.camera, settings.workspace, tool, seed, 0)
 
 
-def pattern_of(columns: int, rows: int, spacing: float, origin: Point, turn: int) -> "Pattern":
+def pattern_of(columns: int, rows: int, spacing: float, origin: Point, turn: int) -> Pattern:
     """Return a pattern of markers (see `perception.markers.Pattern`)."""
-    require_camera()
-    from affcli.perception.markers import Pattern
-
     return Pattern(columns, rows, spacing, origin, turn)
 
 
 def calibrate_picture(
-    path: Path, pattern: "Pattern", color: Color | None, sensor_width: float
-) -> tuple["Calibration", "Capture"]:
+    path: Path, pattern: Pattern, color: Color | None, sensor_width: float
+) -> tuple[Calibration, Capture]:
     """Calibrate the camera that took a picture of a pattern of markers.
 
     Args:
@@ -56,12 +52,6 @@ def calibrate_picture(
     Raises:
         BadInputError: the picture cannot be read, shows no such pattern, or gives no calibration.
     """
-    require_camera()
-    from affcli.perception.calibration import OFF_CENTER, calibrate
-    from affcli.perception.camera import ImageSensor
-    from affcli.perception.images import read_photograph, shrunk, unshrunk
-    from affcli.perception.markers import find_markers
-
     photograph = read_photograph(path)
     picture = photograph.upright
     height, width = picture.shape[:2]
@@ -75,9 +65,7 @@ def calibrate_picture(
     return found, photograph.capture
 
 
-def locate_in_picture(
-    path: Path, calibration: Path, colors: Path | None
-) -> dict[str, list["Place"]]:
+def locate_in_picture(path: Path, calibration: Path, colors: Path | None) -> dict[str, list[Place]]:
     """Return where on the table a picture shows each colour; an empty list where it is not seen.
 
     Args:
@@ -89,12 +77,6 @@ def locate_in_picture(
         BadInputError: a file cannot be read, the picture was not taken as the calibration's, or no
             colour is seen at all.
     """
-    require_camera()
-    from affcli.perception.capture import orientation_for
-    from affcli.perception.images import read_photograph, shrunk
-    from affcli.perception.location import places_of
-    from affcli.perception.segmentation import Segmenter
-
     classes = load_colors(colors)
     camera, kept = _stored_camera(calibration)
     above = [one.name for one in classes if one.height >= camera.position[2]]
@@ -123,15 +105,12 @@ def locate_in_picture(
     return places
 
 
-def _stored_camera(path: Path) -> tuple["Camera", "Capture | None"]:
+def _stored_camera(path: Path) -> tuple[Camera, Capture | None]:
     """Return the camera in a file of a calibration, and how its picture was taken.
 
     Raises:
         BadInputError: it cannot be read, or is none.
     """
-    from affcli.perception.camera import Camera
-    from affcli.perception.capture import checked_capture
-
     try:
         values = _json(path)
         return Camera.from_json(values), checked_capture(values.get("capture"))

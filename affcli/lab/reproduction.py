@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from functools import partial
 
 from affcli import registry
-from affcli.config import with_sensor
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.identity import Component
 from affcli.core.specs import (
@@ -18,7 +17,7 @@ from affcli.core.specs import (
     TrialRecord,
 )
 from affcli.lab.learning_run import LearningRun
-from affcli.lab.run_parts import RunParts, settings_json, settings_of_text, world_of
+from affcli.lab.run_parts import RunParts, settings_of, world_of
 from affcli.lab.trials import trial_specs, whole_trial
 from affcli.lab.versions import versions
 from affcli.lab.workers import in_order
@@ -47,33 +46,13 @@ class Reproduced:
 
     def session(self, robots: int) -> SessionSpec:
         """Return what a reproduction of so many robots is a function of."""
-        parts = self.parts
-        return SessionSpec(
-            kind="reproduce",
-            seed=self.seed,
-            robots=robots,
-            world=parts.world,
-            repertoire=parts.repertoire,
-            binding=parts.binding,
-            explorer=parts.explorer,
-            planner=self.planner,
-            sensor=parts.sensor,
-            settings=settings_json(parts.settings),
-            task_set=registry.DEFAULTS["task"],
-        )
+        own = ("reproduce", self.seed, robots, self.planner, registry.DEFAULTS["task"])
+        return SessionSpec(*own, **self.parts.carried())
 
 
 def reproduced_again(session: SessionSpec) -> Reproduced:
     """Return what a stored reproduction was of, to go on with it."""
-    parts = RunParts(
-        with_sensor(settings_of_text(session.settings), session.sensor),
-        session.world,
-        session.repertoire,
-        session.binding,
-        session.explorer,
-        session.sensor,
-    )
-    return Reproduced(parts, session.planner, session.seed)
+    return Reproduced(RunParts(**session.carried()), session.planner, session.seed)
 
 
 def one_robot(what: Reproduced, robot: int) -> RobotRecord:
@@ -132,7 +111,7 @@ def reproduce(
     Yields:
         The session's id first, then how many robots are saved, each time one more is.
     """
-    world = registry.world(what.parts.world, what.parts.settings)
+    world = registry.world(what.parts.world, settings_of(what.parts))
     made_with = versions(world, what.parts.sensor)
     session = store.sessions.begin(what.session(robots), made_with, now())
     yield session

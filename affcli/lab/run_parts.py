@@ -2,40 +2,22 @@
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 
 from affcli import registry
 from affcli.config import Settings, require_known, settings_from, with_sensor
-from affcli.core.behavior import BehaviorCall, Repertoire
 from affcli.core.identity import Component, canonical_json
 from affcli.core.observation import SensorKind
-from affcli.core.specs import LearningSpec
+from affcli.core.specs import LearningSpec, Parts
 from affcli.core.task import Task
 from affcli.core.tool import Tool
 from affcli.core.world import World
 from affcli.errors import BadInputError, DatabaseError, one_line
 
 
-@dataclass(frozen=True, slots=True)
-class RunParts:
-    """What new learning runs carry, but for the tool, the seed and the time.
-
-    Args:
-        settings: all of them.
-        world: where they take place.
-        repertoire: the exploratory behaviors, by value.
-        binding: how the tool is held.
-        explorer: how the robot chooses what to try next.
-        sensor: through what it sees.
-    """
-
-    settings: Settings
-    world: Component
-    repertoire: Repertoire
-    binding: BehaviorCall
-    explorer: Component
-    sensor: SensorKind
+class RunParts(Parts):
+    """What new learning runs carry, but for the tool, the seed and the time."""
 
     @classmethod
     def chosen(
@@ -55,12 +37,12 @@ class RunParts:
         """
         usual = registry.DEFAULTS
         return cls(
-            settings,
-            registry.component("worlds", world or usual["world"]),
-            registry.repertoire(repertoire or [usual["repertoire"]]),
-            registry.binding(binding or usual["binding"], settings.workspace.tools),
-            registry.component("explorers", explorer or usual["explorer"]),
-            settings.sensor.kind,
+            settings=canonical_json(settings.differing()),
+            world=registry.component("worlds", world or usual["world"]),
+            repertoire=registry.repertoire(repertoire or [usual["repertoire"]]),
+            binding=registry.binding(binding or usual["binding"], settings.workspace.tools),
+            explorer=registry.component("explorers", explorer or usual["explorer"]),
+            sensor=settings.sensor.kind,
         )
 
     def spec(
@@ -72,32 +54,15 @@ class RunParts:
             tool: name of a registered tool.
             seed, robot, hours, behaviors: as in `LearningSpec`.
         """
-        return LearningSpec(
-            held=self.tool(tool),
-            seed=seed,
-            robot=robot,
-            hours=hours,
-            behaviors=behaviors,
-            settings=settings_json(self.settings),
-            world=self.world,
-            repertoire=self.repertoire,
-            binding=self.binding,
-            explorer=self.explorer,
-            sensor=self.sensor,
-        )
+        return LearningSpec(self.tool(tool), seed, robot, hours, behaviors, **self.carried())
 
     def tool(self, name: str) -> Tool:
         """Return a registered tool in these settings' sizes; UsageError for an unknown one."""
-        return registry.tool(name, self.settings.workspace.tools)
+        return registry.tool(name, settings_of_text(self.settings).workspace.tools)
 
 
-def settings_json(settings: Settings) -> str:
-    """Return what differs from the first defaults, as a spec keeps it."""
-    return canonical_json(settings.differing())
-
-
-def settings_of(learned: LearningSpec, sensor: SensorKind | None = None) -> Settings:
-    """Return the settings of a learning run, seen through its own sensor or another."""
+def settings_of(learned: Parts, sensor: SensorKind | None = None) -> Settings:
+    """Return the settings of runs with these parts, seen through their own sensor or another."""
     return with_sensor(settings_of_text(learned.settings), sensor or learned.sensor)
 
 

@@ -13,7 +13,7 @@ from affcli.core.task import ALL_STARTS, Task
 from affcli.core.trial import Outcome, StepRecord, TrialEnd
 from affcli.core.world import World
 from affcli.lab.run_parts import tasks_of, world_of
-from affcli.lab.trials import WithEnd, run_trial, trial_specs
+from affcli.lab.trials import trial_specs, whole_trial
 from affcli.lab.versions import versions
 from affcli.store import Store
 
@@ -43,21 +43,6 @@ class WantedTasks:
 
 
 @dataclass(frozen=True, slots=True)
-class SolvedStep:
-    """One step of a trial, just saved.
-
-    Args:
-        trial: which.
-        record: the step.
-        row: the number of the row tried in the store.
-    """
-
-    trial: TrialSpec
-    record: StepRecord
-    row: int
-
-
-@dataclass(frozen=True, slots=True)
 class SolvedTrial:
     """A trial that ended, just saved.
 
@@ -65,11 +50,13 @@ class SolvedTrial:
         id: its number in the store.
         trial: which it is.
         end: how it ended.
+        steps: its steps, each with the number of the row tried in the store.
     """
 
     id: int
     trial: TrialSpec
     end: TrialEnd
+    steps: tuple[tuple[int, StepRecord], ...]
 
     @property
     def solved(self) -> bool:
@@ -85,7 +72,7 @@ def solve(
     now: Callable[[], str],
     planner: Component,
     sensor: SensorKind | None = None,
-) -> Iterator[SolvedStep | SolvedTrial]:
+) -> Iterator[SolvedTrial]:
     """Do one trial for each learned tool and task, one after the other.
 
     Each trial starts from the table as it is in the store, counters included, and is saved with the
@@ -102,13 +89,13 @@ def solve(
         sensor: through what they see; None for what they learned with.
 
     Yields:
-        The steps of each trial once it is saved, and its end.
+        Each trial once it is saved.
 
     Raises:
         UsageError: there are no such tasks.
         BadInputError: a part that this affcli lacks.
     """
-    choosing = registry.planner(planner)
+    registry.planner(planner)
     planned = []
     for run in runs:
         world, kind = world_of(run.spec), sensor or run.spec.sensor
@@ -117,29 +104,22 @@ def solve(
             *(seed, kind, planner, world),
         )
         # A camera that is not there, or cannot be calibrated, is found before anything is recorded.
-        calibration = world.trial(specs[0], run.spec).calibration
-        planned.append((run, world, specs, calibration))
-    _, world, specs, _ = planned[0]
+        _ = world.trial(specs[0], run.spec).calibration
+        planned.append((run, world, specs))
+    _, world, specs = planned[0]
     spec = session_spec("solve", runs[0], specs[0])
     session = store.sessions.begin(spec, versions(world, spec.sensor), now())
-    for run, world, specs, calibration in planned:
+    for run, world, specs in planned:
         for as_learned in specs:
             trial = replace(as_learned, counters=Counters.STORED)
-            taken = []
             # Others who use this table wait: the counters that a trial begins with are those that
             # the trials before it left, as a replay takes it.
             with store.turn():
                 table, ids = store.learning.table(run.id)
-                number = store.trials.begin(session, run.id, trial, calibration)
-                setting = world.trial(trial, run.spec)
-                steps = WithEnd(run_trial(trial, run.spec, table, setting, choosing))
-                for record, truth in steps:
-                    row = ids[record.row.step]
-                    store.trials.save_step(number, trial, record, truth, row)
-                    taken.append(SolvedStep(trial, record, row))
-                store.trials.end(number, steps.end)
-            yield from taken
-            yield SolvedTrial(number, trial, steps.end)
+                record = whole_trial(trial, run.spec, table, world)
+                (number,) = store.trials.save_all(session, run.id, [record], ids)
+            steps = tuple((ids[step.record.row.step], step.record) for step in record.steps)
+            yield SolvedTrial(number, trial, record.end, steps)
     store.sessions.finish(session, now())
 
 
@@ -151,17 +131,5 @@ def session_spec(kind: str, run: LearningRunInfo, trial: TrialSpec) -> SessionSp
         run: whose table is used; of several the first.
         trial: one of its trials.
     """
-    learned = run.spec
-    return SessionSpec(
-        kind=kind,
-        seed=trial.seed,
-        robots=1,
-        world=trial.world,
-        repertoire=learned.repertoire,
-        binding=learned.binding,
-        explorer=learned.explorer,
-        planner=trial.planner,
-        sensor=trial.sensor,
-        settings=learned.settings,
-        task_set=trial.task.task_set,
-    )
+    parts = {**run.spec.carried(), "world": trial.world, "sensor": trial.sensor}
+    return SessionSpec(kind, trial.seed, 1, trial.planner, trial.task_set, **parts)

@@ -70,11 +70,11 @@ def whole_trial(
     world: World,
     lost: LostRows | None = None,
 ) -> TrialRecord:
-    """Run one trial from the table as learned, to its end.
+    """Run one trial from a table, to its end.
 
     Args:
         spec, learned: as in `run_trial`.
-        table: counters as learned; left as they are.
+        table: left as it is; the trial counts in a copy of its own.
         world: where it takes place; it is laid out anew.
         lost: asked of each row tried, when the tool broke.
     """

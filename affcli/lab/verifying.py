@@ -12,7 +12,7 @@ from affcli.core.records import LearningRunInfo
 from affcli.core.specs import LearningSpec, VerificationSpec
 from affcli.core.tool import Tool
 from affcli.core.trial import Truth
-from affcli.core.verification import Evidence, ReplicationRecord, Verdict, decided_after
+from affcli.core.verification import Evidence, ReplicationRecord, Verdict
 from affcli.errors import UsageError
 from affcli.lab.run_parts import world_of
 from affcli.lab.versions import versions
@@ -111,17 +111,11 @@ def verify(
     calibration = world.verification(spec, run.spec, 0).calibration
     with store.turn() if update else nullcontext():
         table, ids = store.learning.table(run.id)
-        number = 0
-        if update:
-            made_with = versions(world, spec.sensor)
-            number = store.verifications.begin(run.id, spec, made_with, now(), calibration)
-        done = []
+        began, done = now(), []
         for record, truth in replications(spec, run.spec, table):
             row_id = ids[record.row.step]
-            if update:
-                store.verifications.save(number, record, truth, row_id)
-            done.append(record)
+            done.append((record, truth, row_id))
             yield JudgedTry(record, row_id, region_of(run.spec.held, record.row))
         if update:
-            verdict, decided = Evidence.of(done).verdict, decided_after(done)
-            store.verifications.end(number, verdict, decided, now())
+            made_with = versions(world, spec.sensor)
+            store.verifications.save(run.id, spec, done, made_with, began, now(), calibration)

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,15 +16,16 @@ from affcli.core.tool import PUCK_COLOR, hold_of
 from affcli.lab.filming import FRAME_RATE, Reel
 from affcli.lab.photographs import SHOWN, eye_at
 from affcli.lab.run_parts import require_shape, settings_of
+from affcli.perception.camera_sensor import Eye, picture_of_pattern, table_pattern
+from affcli.perception.images import png
+from affcli.perception.palette import MARKER_COLOR, ColorClass, Role
+from affcli.perception.rendering import Picture
+from affcli.perception.segmentation import Segmentation, Segmenter
+from affcli.perception.view import side_by_side, video
 from affcli.simulation.robot import SimulatedRobot
 from affcli.simulation.sensing import eye_of
 from affcli.simulation.table import Table
 from affcli.simulation.tasks.extension_of_reach import goal_regions, start_positions
-
-if TYPE_CHECKING:
-    from affcli.perception.camera_sensor import Eye
-    from affcli.perception.rendering import Picture
-    from affcli.perception.segmentation import Segmentation
 
 VIEW = 3
 """First word of the key of the random stream that decides the noise in a picture made to be looked
@@ -42,22 +42,15 @@ class View:
     """
 
     title: str
-    seen: "Segmentation"
+    seen: Segmentation
 
     def png(self, *, frame_alone: bool) -> bytes:
         """Return the frame, and unless it is wanted alone the segmentation beside it, as PNG."""
-        from affcli.perception.images import png
-        from affcli.perception.view import side_by_side
-
         return png(self.seen.picture if frame_alone else side_by_side(self.seen, self.title))
 
 
 def view_of_pattern(settings: Settings, seed: int) -> View:
     """Return the calibration pattern as it lies on the table at power-up."""
-    from affcli.perception.camera_sensor import picture_of_pattern, table_pattern
-    from affcli.perception.palette import MARKER_COLOR, ColorClass, Role
-    from affcli.perception.segmentation import Segmenter
-
     eye = eye_at(settings, seed)
     pattern = table_pattern(settings.camera, settings.workspace)
     rng = np.random.Generator(np.random.PCG64((VIEW, seed)))
@@ -97,7 +90,7 @@ def view_of_step(step: StepScene, *, after: bool) -> View:
     return View(what, _seen(scene, _eye_of(step), VIEW, *step.key))
 
 
-def film_of_step(step: "StepScene", ending: str, *, frame_alone: bool) -> bytes:
+def film_of_step(step: StepScene, ending: str, *, frame_alone: bool) -> bytes:
     """Return what the camera saw during a step as a video, 15 frames a robot second.
 
     It is executed again from its record: the tool is carried to where it began, then comes the
@@ -111,13 +104,11 @@ def film_of_step(step: "StepScene", ending: str, *, frame_alone: bool) -> bytes:
     Raises:
         BadInputError: the video cannot be made.
     """
-    from affcli.perception.view import side_by_side, video
-
     rng = np.random.Generator(np.random.PCG64((VIEW, *step.key)))
     eye = _eye_of(step)
     title = f"{step.title}, {step.call}"
 
-    def pictures() -> Iterator["Picture"]:
+    def pictures() -> Iterator[Picture]:
         """Yield one picture after the other: a long stillness would fill the memory."""
         for scene in scenes_of_step(step):
             picture = eye.renderer.take(scene, rng)
@@ -160,14 +151,14 @@ def _scene(step: StepScene) -> Scene:
     )
 
 
-def _eye_of(step: StepScene) -> "Eye":
+def _eye_of(step: StepScene) -> Eye:
     """Return the camera of the robot whose step it is."""
     settings = settings_of(step.learned)
     believed = step.learned.held
     return eye_of(settings.camera, settings.workspace, believed, step.seed, step.robot)
 
 
-def _seen(scene: Scene, eye: "Eye", *key: int) -> "Segmentation":
+def _seen(scene: Scene, eye: Eye, *key: int) -> Segmentation:
     """Take a picture of a scene and segment it."""
     rng = np.random.Generator(np.random.PCG64(key))
     return eye.segmenter.segment(eye.renderer.take(scene, rng))

@@ -9,8 +9,8 @@ from affcli.core.affordance import PROBABILITY_THRESHOLD
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.records import StepScene, StoredStep, TrialInfo
 from affcli.core.replay import Difference
-from affcli.core.specs import Counters, Protocol, TrialRecord, TrialSpec
-from affcli.core.trial import StepRecord, TrialEnd, TrialStep, Truth
+from affcli.core.specs import Counters, Protocol, TrialRecord
+from affcli.core.trial import TrialEnd, TrialStep
 from affcli.errors import UsageError
 from affcli.store import reading, rows
 from affcli.store.comparing import by_number, differences
@@ -36,56 +36,6 @@ class Trials:
 
     database: Database
 
-    def begin(
-        self, session_id: int, run_id: int, spec: TrialSpec, calibration: str | None = None
-    ) -> int:
-        """Return the id of a new trial without steps.
-
-        Args:
-            session_id: the session it is part of.
-            run_id: the learning run whose table it starts from.
-            spec: which trial.
-            calibration: of the camera it sees through, as JSON; None without one.
-        """
-        part_of = {"session_id": session_id, "learning_run_id": run_id}
-        with self.database.writing() as connection:
-            insert_tools(connection, spec)
-            return insert_one(connection, trial, rows.trial_row(spec, calibration) | part_of)
-
-    def save_step(
-        self,
-        trial_id: int,
-        spec: TrialSpec,
-        record: StepRecord,
-        truth: Truth | None,
-        affordance_id: int,
-    ) -> None:
-        """Save one step, and the counters it changed, in one transaction.
-
-        The stored counters change when the trial is one that updates them (`Counters.STORED`).
-
-        Args:
-            trial_id: the trial.
-            spec: which trial.
-            record: the step.
-            truth: where the attractor truly was; None in a world that does not tell.
-            affordance_id: the row that was tried, in the store.
-
-        Raises:
-            DatabaseError: another process changed the counters meanwhile; nothing is saved.
-        """
-        row = rows.step_row(trial_id, affordance_id, record, truth, None)
-        with self.database.writing() as connection:
-            if spec.counters is Counters.STORED:
-                count_use(connection, self.database.path, record, affordance_id, "steps")
-            insert_many(connection, step, [row])
-
-    def end(self, trial_id: int, end: TrialEnd) -> None:
-        """Save how a trial ended."""
-        with self.database.writing() as connection:
-            values = rows.trial_end_row(end)
-            connection.execute(sa.update(trial).filter_by(id=trial_id).values(values))
-
     def save_all(
         self,
         session_id: int,
@@ -93,7 +43,7 @@ class Trials:
         trials: Sequence[TrialRecord],
         affordance_ids: Mapping[int, int],
     ) -> list[int]:
-        """Save whole trials that started from the table as learned, in one transaction.
+        """Save whole trials, with the stored counters that they changed, in one transaction.
 
         Args:
             session_id: the session they are part of.
@@ -106,7 +56,12 @@ class Trials:
         """
         packed = [pack_trial(record) for record in trials]
         with self.database.writing() as connection:
-            return insert_trials(connection, session_id, run_id, packed, affordance_ids)
+            numbers = insert_trials(connection, session_id, run_id, packed, affordance_ids)
+            for used in (r for r in trials if r.spec.counters is Counters.STORED):
+                for one in (step.record for step in used.steps):
+                    row_id = affordance_ids[one.row.step]
+                    count_use(connection, self.database.path, one, row_id, "trials")
+        return numbers
 
     def trial(self, trial_id: int) -> TrialInfo:
         """Return a testing trial.

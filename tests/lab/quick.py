@@ -16,7 +16,7 @@ from affcli.lab.breaking import break_tool
 from affcli.lab.learning_run import LearningRun
 from affcli.lab.reproduction import Reproduced, reproduce
 from affcli.lab.run_parts import RunParts, tool_of
-from affcli.lab.solving import SolvedStep, SolvedTrial, WantedTasks, solve
+from affcli.lab.solving import SolvedTrial, WantedTasks, solve
 from affcli.store import Store
 from tests.factories import learning_spec
 
@@ -88,7 +88,7 @@ def solving(
     seed: int = 0,
     planner: Component = PLANNER,
     sensor: SensorKind | None = None,
-) -> Iterator[SolvedStep | SolvedTrial]:
+) -> Iterator[SolvedTrial]:
     """Solve some of the paper's tasks with what the store holds."""
     wanted = WantedTasks("extension-of-reach", goal, start)
     many = runs if isinstance(runs, list) else [runs]

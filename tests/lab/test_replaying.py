@@ -42,6 +42,7 @@ from tests.lab.quick import (
     stored,
     table_from,
 )
+from tests.store.records import unfinished_trial
 
 
 @pytest.fixture
@@ -376,7 +377,7 @@ def test_a_trial_that_was_killed_before_its_first_step_is_there_without_steps(
 ) -> None:
     spec = replace(trial_spec(run.spec), counters=Counters.STORED)
     session = store.sessions.begin(session_spec("solve", run, spec), {}, NOW)
-    number = store.trials.begin(session, run.id, spec)
+    number = unfinished_trial(store, session, run.id, spec)
     replay = replay_trial(store, number)
     assert (replay.steps, replay.end, replay.differences) == ((), None, ())
     assert replay.opening.attractor.point == spec.task.start

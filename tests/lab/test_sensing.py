@@ -13,7 +13,6 @@ from affcli.lab.learning import learn
 from affcli.lab.learning_run import LearningRun
 from affcli.lab.reproduction import Reproduced, one_robot, reproduce
 from affcli.lab.run_parts import RunParts
-from affcli.lab.solving import SolvedTrial
 from affcli.lab.trials import whole_trial
 from affcli.perception.camera import Camera
 from affcli.simulation.sensing import SimulatedSight, eye_of
@@ -115,11 +114,7 @@ def test_a_table_learned_through_one_sensor_serves_through_another(
 ) -> None:
     """Search 1 works on colours as the camera measures them, too."""
     run = stored(store, spec_of(behaviors=400))
-    (trial,) = (
-        event
-        for event in solving(store, run, "3", "3", sensor=kind)
-        if isinstance(event, SolvedTrial)
-    )
+    (trial,) = (event for event in solving(store, run, "3", "3", sensor=kind))
     assert trial.solved
     left = {step.reasons[0] for step in store.trials.steps(trial.id)}
     assert {(reason.name, reason.rows) for reason in left} == {("consistent", run.rows)}

@@ -8,10 +8,9 @@ from affcli.core.affordance import Affordance
 from affcli.core.identity import Component
 from affcli.core.records import LearningRunInfo, StoredStep
 from affcli.core.specs import Counters
-from affcli.core.trial import Outcome
+from affcli.core.trial import Outcome, StepRecord
 from affcli.errors import AffcliError, BadInputError, UsageError
 from affcli.lab.replaying import replay_trial
-from affcli.lab.solving import SolvedStep, SolvedTrial
 from affcli.store import Store, open_store, run_sql
 from tests.lab.quick import IMPATIENT, counted, solving, spec_of, stored, taken
 
@@ -35,10 +34,10 @@ def steps_of(store: Store) -> list[StoredStep]:
 
 
 def assert_counters_are_those_of_the_steps(
-    store: Store, run: LearningRunInfo, steps: list[SolvedStep]
+    store: Store, run: LearningRunInfo, steps: list[tuple[int, StepRecord]]
 ) -> None:
     for row in rows_of(store, run):
-        uses = [s.record for s in steps if s.record.row.step == row.step]
+        uses = [record for _, record in steps if record.row.step == row.step]
         assert row.times_used == 1 + len(uses)
         assert row.times_successful == 1 + sum(record.replicated for record in uses)
 
@@ -48,12 +47,11 @@ def test_stored_counters_and_stored_steps_agree(
     store: Store, run: LearningRunInfo, goal: str
 ) -> None:
     """§3.2: the counters "are updated during testing trials": those in the store."""
-    events = list(solving(store, run, goal))
-    steps = [event for event in events if isinstance(event, SolvedStep)]
+    steps = [step for trial in solving(store, run, goal) for step in trial.steps]
     assert_counters_are_those_of_the_steps(store, run, steps)
     kept = steps_of(store)
     assert [(s.number, s.affordance_id, s.row, s.replicated, s.reasons) for s in kept] == [
-        (s.record.number, s.row, s.record.row, s.record.replicated, s.record.reasons) for s in steps
+        (r.number, row, r.row, r.replicated, r.reasons) for row, r in steps
     ]
     latest = {s.affordance_id: s for s in kept}
     table, ids = store.learning.table(run.id)
@@ -68,10 +66,10 @@ def test_each_trial_starts_from_the_counters_that_the_one_before_it_left(
     store: Store, run: LearningRunInfo
 ) -> None:
     used = {row.step: 1 for row in rows_of(store, run)}
-    for event in solving(store, run, "2"):
-        if isinstance(event, SolvedStep):
-            assert event.record.row.times_used == used[event.record.row.step]
-            used[event.record.row.step] += 1
+    for trial in solving(store, run, "2"):
+        for _, record in trial.steps:
+            assert record.row.times_used == used[record.row.step]
+            used[record.row.step] += 1
     assert sum(used.values()) > len(used)
 
 
@@ -79,17 +77,11 @@ def test_a_trial_is_in_the_store_before_its_steps_are_told(
     store: Store, run: LearningRunInfo
 ) -> None:
     """Nothing told is lost: a command that is stopped after a trial has saved that trial, whole."""
-    told: list[SolvedStep] = []
-    for event in solving(store, run):
-        if isinstance(event, SolvedStep):
-            told.append(event)
-            kept = store.trials.trials()[-1]
-            assert kept.outcome is not None
-            assert len(store.trials.steps(kept.id)) == kept.steps
-        else:
-            assert_counters_are_those_of_the_steps(store, run, told)
-            break
-    assert told
+    told = next(solving(store, run))
+    (kept,) = store.trials.trials()
+    assert (kept.id, kept.outcome) == (told.id, told.end.outcome)
+    assert len(store.trials.steps(kept.id)) == kept.steps == len(told.steps) > 0
+    assert_counters_are_those_of_the_steps(store, run, list(told.steps))
 
 
 def test_a_trial_that_is_stopped_leaves_nothing(
@@ -100,7 +92,7 @@ def test_a_trial_that_is_stopped_leaves_nothing(
     def stop(*args: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("affcli.store.trials.Trials.end", stop)
+    monkeypatch.setattr("affcli.store.trials.count_use", stop)
     with pytest.raises(KeyboardInterrupt):
         list(solving(store, run))
     assert store.trials.trials() == ()
@@ -113,7 +105,7 @@ def test_two_who_solve_with_one_table_take_turns(store: Store, run: LearningRunI
         one, two = solving(store, run, "1"), solving(other, run, "2")
         for _ in range(4):
             for events in (one, two):
-                next(event for event in events if isinstance(event, SolvedTrial))
+                next(events)
     trials = store.trials.trials()
     assert [t.spec.goal for t in trials] == ["1", "2"] * 4
     assert not any(replay_trial(store, trial.id).differences for trial in trials)
@@ -123,8 +115,7 @@ def test_a_trial_of_each_tool_and_start_ends_and_is_kept(
     store: Store, run: LearningRunInfo
 ) -> None:
     stick = stored(store, spec_of("stick", 200, settings=IMPATIENT))
-    events = list(solving(store, [run, stick], "3", seed=7))
-    ends = [event for event in events if isinstance(event, SolvedTrial)]
+    ends = list(solving(store, [run, stick], "3", seed=7))
     which = [(e.trial.tool, e.trial.shape, e.trial.goal, e.trial.start) for e in ends]
     assert which == [(tool, tool, "3", start) for tool in ("t-hook", "stick") for start in GOALS]
     assert {(e.trial.seed, e.trial.counters) for e in ends} == {(7, Counters.STORED)}
@@ -136,8 +127,7 @@ def test_a_trial_of_each_tool_and_start_ends_and_is_kept(
     (session,) = store.sessions.all("solve")
     assert session.status == "done"
     for end in ends:
-        mine = [e for e in events if isinstance(e, SolvedStep) and e.trial == end.trial]
-        assert len(mine) == end.end.steps
+        assert len(end.steps) == end.end.steps
 
 
 def test_one_start_alone(store: Store, run: LearningRunInfo) -> None:
@@ -174,9 +164,9 @@ def test_solving_again_goes_on_with_the_counters_as_they_are(
 ) -> None:
     for _ in range(2):
         before = {row.step: row for row in rows_of(store, run)}
-        events = solving(store, run, "4", "1", seed=3)
-        first = next(e for e in events if isinstance(e, SolvedStep))
-        assert first.record.row == before[first.record.row.step]
+        (trial,) = solving(store, run, "4", "1", seed=3)
+        _, first = trial.steps[0]
+        assert first.row == before[first.row.step]
     assert len(store.sessions.all("solve")) == 2
 
 

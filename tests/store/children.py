@@ -22,7 +22,15 @@ from affcli.store import Store, open_store, run_sql, upgrade
 def write_something(store: Store) -> None:
     """Write, without importing what makes records: it takes longer than all that is tested."""
     table, grasp = Component("table"), BehaviorCall.of(GRASP, {"grasp_point": 1.0})
-    spec = SessionSpec("solve", 0, 1, table, (), grasp, table, table, "noisy", "{}", "none")
+    spec = SessionSpec(
+        *("solve", 0, 1, table, "none"),
+        settings="{}",
+        world=table,
+        repertoire=(),
+        binding=grasp,
+        explorer=table,
+        sensor="noisy",
+    )
     store.sessions.begin(spec, {}, "now")
 
 

@@ -36,6 +36,9 @@ from affcli.core.trial import (
 )
 from affcli.core.verification import ReplicationRecord
 from affcli.store import Store
+from affcli.store.connection import insert_one
+from affcli.store.rows import trial_row
+from affcli.store.tables import trial as trial_table
 from tests.factories import BINDING, EXTEND_5, learning_spec, observation
 
 NOW = "2026-01-02T03:04:05+00:00"
@@ -53,13 +56,8 @@ REASONS = (
 def session_spec(kind: str = "solve", *, seed: int = 0, robots: int = 1) -> SessionSpec:
     """Return a session by what the short learning runs carry."""
     run = learning_spec()
-    return SessionSpec(
-        *(kind, seed, robots, run.world, run.repertoire, run.binding, run.explorer),
-        planner=Component("nested-query"),
-        sensor=run.sensor,
-        settings=run.settings,
-        task_set="extension-of-reach",
-    )
+    planner = Component("nested-query")
+    return SessionSpec(kind, seed, robots, planner, "extension-of-reach", **run.carried())
 
 
 def begun(store: Store, kind: str = "solve", *, seed: int = 0, robots: int = 1) -> int:
@@ -225,3 +223,25 @@ def robot_record(robot: int, *, behaviors: int = 6, seed: int = 0) -> RobotRecor
 def all_steps(trials: Sequence[TrialRecord]) -> list[TrialStep]:
     """Return the steps of several trials in one list."""
     return list(itertools.chain.from_iterable(trial.steps for trial in trials))
+
+
+def save_trial(
+    store: Store,
+    session: int,
+    run: int,
+    spec: TrialSpec,
+    steps: Sequence[TrialStep] = (),
+    outcome: Outcome = Outcome.SOLVED,
+) -> int:
+    """Save a trial of these steps from beginning to end; return its number."""
+    _, ids = store.learning.table(run)
+    end = TrialEnd(outcome, len(steps), 6.5 * len(steps))
+    (number,) = store.trials.save_all(session, run, [TrialRecord(spec, tuple(steps), end)], ids)
+    return number
+
+
+def unfinished_trial(store: Store, session: int, run: int, spec: TrialSpec) -> int:
+    """Leave a trial without steps and end, as affcli did that saved step by step and was killed."""
+    row = trial_row(spec, None) | {"session_id": session, "learning_run_id": run}
+    with store.database.writing() as connection:
+        return insert_one(connection, trial_table, row)

@@ -19,6 +19,7 @@ from tests.store.records import (
     robot_record,
     trial_spec,
     trial_step,
+    unfinished_trial,
 )
 
 BROKEN = Protocol.TOOL_ADAPTATION
@@ -82,7 +83,7 @@ def test_trials_that_have_not_ended_or_are_invalid_are_left_out(
     vain = trial_step(rows_of(store, run)[0], 1, seen=(0.0, 0.0), lost=True)
     session = save(store, run, 1, vain)
     save(store, run, 2, vain, outcome=Outcome.INVALID)
-    store.trials.begin(session, run.id, trial_spec(1, 3, shape="l-hook", protocol=BROKEN))
+    unfinished_trial(store, session, run.id, trial_spec(1, 3, shape="l-hook", protocol=BROKEN))
     (group,) = store.results.trial_groups(session, "t-hook", "l-hook", RIGHT, by_robot=True)
     assert (group.trials, len(group.steps)) == (1, 1)
 

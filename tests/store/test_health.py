@@ -6,8 +6,6 @@ from pathlib import Path
 import pytest
 
 from affcli.core.specs import Counters
-from affcli.core.trial import Outcome, TrialEnd
-from affcli.core.verification import Verdict
 from affcli.errors import DatabaseError
 from affcli.store import Store, check, open_store
 from tests.store.records import (
@@ -17,6 +15,7 @@ from tests.store.records import (
     counted,
     learned,
     replication,
+    save_trial,
     trial_spec,
     trial_step,
     verification_spec,
@@ -33,18 +32,18 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
         session, row = begun(store), table.row(0)
         for start in (1, 2):
             spec = trial_spec(start=start, counters=Counters.STORED)
-            trial = store.trials.begin(session, run.id, spec)
+            steps = []
             for number in (1, 2, 3):
                 step = trial_step(row, number, seen=(0.0, 4.0 * (number % 2)))
-                store.trials.save_step(trial, spec, step.record, step.truth, ids[row.step])
+                steps.append(step)
                 row = counted(row, step.record)
-            store.trials.end(trial, TrialEnd(Outcome.SOLVED, 3, 19.5))
-        verification = store.verifications.begin(run.id, verification_spec(), VERSIONS, NOW)
+            save_trial(store, session, run.id, spec, steps)
+        tries = []
         for number in range(1, 5):
             record, truth = replication(row, number)
-            store.verifications.save(verification, record, truth, ids[row.step])
+            tries.append((record, truth, ids[row.step]))
             row = counted(row, record)
-        store.verifications.end(verification, Verdict.UNDECIDED, None, NOW)
+        store.verifications.save(run.id, verification_spec(), tries, VERSIONS, NOW, NOW)
     return path
 
 

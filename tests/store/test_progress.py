@@ -4,7 +4,6 @@ import pytest
 
 from affcli.core.results import LearningInterval
 from affcli.core.specs import Counters
-from affcli.core.trial import Outcome, TrialEnd
 from affcli.store import Store
 from tests.factories import learning_spec
 from tests.store.records import (
@@ -15,6 +14,7 @@ from tests.store.records import (
     learned,
     learning_steps,
     robot_record,
+    save_trial,
     trial_spec,
     trial_step,
 )
@@ -49,16 +49,14 @@ def test_of_a_reproduction_every_robot_is_counted_and_of_a_run_only_that(store: 
 
 def stored_trial(store: Store, run: int, session: int, start: int, *failed: int) -> int:
     """Do a trial that updates the stored counters and in which some rows fail once."""
-    rows, ids = store.learning.table(run)
-    spec = trial_spec(start=start, counters=Counters.STORED)
-    trial = store.trials.begin(session, run, spec)
+    rows, _ = store.learning.table(run)
+    steps = []
     for number, position in enumerate(failed, 1):
         row = rows.row(position)
-        step = trial_step(row, number, seen=(0.0, 0.0))
-        store.trials.save_step(trial, spec, step.record, step.truth, ids[row.step])
-        assert counted(row, step.record).replication_probability <= 0.5
-    store.trials.end(trial, TrialEnd(Outcome.SOLVED, len(failed), 6.5))
-    return trial
+        steps.append(trial_step(row, number, seen=(0.0, 0.0)))
+        assert counted(row, steps[-1].record).replication_probability <= 0.5
+    spec = trial_spec(start=start, counters=Counters.STORED)
+    return save_trial(store, session, run, spec, steps)
 
 
 def test_a_trial_finds_excluded_what_died_in_the_trials_before_it(store: Store) -> None:
@@ -83,8 +81,8 @@ def test_a_trial_that_starts_from_the_table_as_learned_finds_all_rows(
     other = learned(store, spec=learning_spec(seed=5, behaviors=9))
     session = begun(store)
     stored_trial(store, run.id, session, 1, 0)
-    later = store.trials.begin(session, run.id, trial_spec(start=2, counters=counters))
+    later = save_trial(store, session, run.id, trial_spec(start=2, counters=counters))
     assert len(store.trials.excluded_before(later)) == (counters is Counters.STORED)
     foreign = begun(store)
     spec = trial_spec(counters=Counters.STORED)
-    assert store.trials.excluded_before(store.trials.begin(foreign, other.id, spec)) == set()
+    assert store.trials.excluded_before(save_trial(store, foreign, other.id, spec)) == set()

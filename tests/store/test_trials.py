@@ -24,10 +24,12 @@ from tests.store.records import (
     learned,
     replication,
     robot_record,
+    save_trial,
     session_spec,
     trial_record,
     trial_spec,
     trial_step,
+    unfinished_trial,
     verification_spec,
 )
 
@@ -74,17 +76,14 @@ def test_a_reproduction_begun_again_is_the_same_session(store: Store) -> None:
     assert begun(store, "reproduce", seed=8, robots=200) != first
 
 
-def test_a_step_and_the_counters_it_changes_are_saved_together(store: Store) -> None:
+def test_a_trial_and_the_counters_it_changes_are_saved_together(store: Store) -> None:
     run = learned(store, 9)
-    table, ids = store.learning.table(run.id)
-    spec = trial_spec(counters=STORED)
-    trial = store.trials.begin(begin_solving(store), run.id, spec)
+    table, _ = store.learning.table(run.id)
     row = table.row(1)
     step = trial_step(row)
-    store.trials.save_step(trial, spec, step.record, step.truth, ids[row.step])
-    assert counters_of(store) == [(1, 1), (2, 2), (1, 1)]
     failed = trial_step(counted(row, step.record), 2, seen=(0.0, 0.0))
-    store.trials.save_step(trial, spec, failed.record, failed.truth, ids[row.step])
+    spec = trial_spec(counters=STORED)
+    trial = save_trial(store, begin_solving(store), run.id, spec, [step, failed])
     assert counters_of(store) == [(1, 1), (3, 2), (1, 1)]
     assert list(store.learning.table(run.id)[0])[1].times_used == 3
     assert [(s.times_used_after, s.times_successful_after) for s in store.trials.steps(trial)] == [
@@ -93,35 +92,34 @@ def test_a_step_and_the_counters_it_changes_are_saved_together(store: Store) -> 
     ]
 
 
-def test_a_step_that_cannot_be_saved_leaves_the_counters(store: Store) -> None:
+def test_a_trial_that_cannot_be_saved_leaves_the_counters(store: Store) -> None:
     run = learned(store, 9)
-    table, ids = store.learning.table(run.id)
-    spec = trial_spec(counters=STORED)
-    trial = store.trials.begin(begun(store), run.id, spec)
+    table, _ = store.learning.table(run.id)
     row = table.row(0)
     step = trial_step(row)
-    store.trials.save_step(trial, spec, step.record, step.truth, ids[row.step])
     again = trial_step(counted(row, step.record), 1)  # of the same number
     with pytest.raises(DatabaseError, match="UNIQUE constraint failed: step"):
-        store.trials.save_step(trial, spec, again.record, again.truth, ids[row.step])
-    assert counters_of(store) == [(2, 2), (1, 1), (1, 1)]
-    assert len(store.trials.steps(trial)) == 1
+        save_trial(store, begun(store), run.id, trial_spec(counters=STORED), [step, again])
+    assert counters_of(store) == [(1, 1)] * 3
+    assert store.trials.trials() == ()
 
 
-def test_a_try_and_the_counters_it_changes_are_saved_together(store: Store) -> None:
+def test_tries_and_the_counters_they_change_are_saved_together(store: Store) -> None:
     run = learned(store, 9)
     table, ids = store.learning.table(run.id)
     row = table.row(0)
-    verification = store.verifications.begin(run.id, verification_spec(), VERSIONS, NOW)
     record, truth = replication(row)
-    store.verifications.save(verification, record, truth, ids[row.step])
-    again, truth = replication(counted(row, record))
+    again, _ = replication(counted(row, record))
+    one, same = (record, truth, ids[row.step]), (again, truth, ids[row.step])
     with pytest.raises(DatabaseError, match="UNIQUE constraint failed: replication"):
-        store.verifications.save(verification, again, truth, ids[row.step])
+        store.verifications.save(run.id, verification_spec(), [one, same], VERSIONS, NOW, NOW)
+    assert counters_of(store) == [(1, 1)] * 3
+    store.verifications.save(run.id, verification_spec(), [one], VERSIONS, NOW, LATER)
     assert counters_of(store) == [(2, 2), (1, 1), (1, 1)]
     (tried,) = store.verifications.of_row(ids[row.step])
     assert (tried.shape, tried.before, tried.after) == ("l-hook", (1, 1), (2, 2))
-    assert value(store, "select world from verification") == "table"
+    kept = "select world, tries, uses_before, started_at, finished_at, verdict from verification"
+    assert run_sql(store.path, kept).rows == (("table", 1, 3, NOW, LATER, "undecided"),)
 
 
 def test_two_planners_and_any_goal_fit_into_a_session(store: Store) -> None:
@@ -135,7 +133,7 @@ def test_two_planners_and_any_goal_fit_into_a_session(store: Store) -> None:
         replace(trial_spec(planner="oracle@2:depth=3"), task=shelf, world=Component("moon")),
     )
     for spec in specs:
-        store.trials.begin(session, run.id, spec)
+        save_trial(store, session, run.id, spec)
     trials = store.trials.trials(session_id=session)
     assert tuple(trial.spec for trial in trials) == specs
     assert {trial.learned for trial in trials} == {run.spec}
@@ -168,26 +166,21 @@ def test_a_trial_from_the_table_as_learned_leaves_the_stored_counters(store: Sto
     run = learned(store, 9)
     table, ids = store.learning.table(run.id)
     session = begin_solving(store)
-    spec = trial_spec()
-    trial = store.trials.begin(session, run.id, spec)
-    step = trial_step(table.row(0))
-    store.trials.save_step(trial, spec, step.record, step.truth, ids[3])
+    save_trial(store, session, run.id, trial_spec(), [trial_step(table.row(0))])
     store.trials.save_all(session, run.id, [trial_record(trial_spec(3), list(table))], ids)
     assert counters_of(store) == [(1, 1)] * 3
 
 
 def test_counters_that_another_process_changed_stop_the_trial(store: Store) -> None:
     run = learned(store, 9)
-    table, ids = store.learning.table(run.id)
+    table, _ = store.learning.table(run.id)
     spec = trial_spec(counters=STORED)
-    trial = store.trials.begin(begin_solving(store), run.id, spec)
     step = trial_step(table.row(0))
     with open_store(store.path, create=False, write=True) as other:
-        other_trial = other.trials.begin(begin_solving(other), run.id, spec)
-        other.trials.save_step(other_trial, spec, step.record, step.truth, ids[3])
+        save_trial(other, begin_solving(other), run.id, spec, [step])
     with pytest.raises(DatabaseError, match="another process changed the counters of affordance 1"):
-        store.trials.save_step(trial, spec, step.record, step.truth, ids[3])
-    assert store.trials.steps(trial) == ()
+        save_trial(store, begin_solving(store), run.id, spec, [step])
+    assert len(store.trials.trials()) == 1
     assert counters_of(store) == [(2, 2), (1, 1), (1, 1)]
 
 
@@ -201,14 +194,11 @@ def test_counters_and_steps_hold_together(
     """A stored counter is 1 plus what the steps of trials with stored counters add to it."""
     runs = store.learning.runs()
     run = runs[0] if runs else learned(store, 9)
-    _, ids = store.learning.table(run.id)
     for position, success, counters in uses:
         table, _ = store.learning.table(run.id, as_learned=counters is Counters.AS_LEARNED)
         spec = trial_spec(counters=counters)
-        trial = store.trials.begin(begin_solving(store), run.id, spec)
-        row = table.row(position)
-        step = trial_step(row, seen=(0.0, 4.0) if success else (0.0, 0.0))
-        store.trials.save_step(trial, spec, step.record, step.truth, ids[row.step])
+        step = trial_step(table.row(position), seen=(0.0, 4.0) if success else (0.0, 0.0))
+        save_trial(store, begin_solving(store), run.id, spec, [step])
     assert (
         value(
             store,
@@ -225,10 +215,9 @@ def test_counters_and_steps_hold_together(
 
 def test_a_trial_keeps_how_it_ended(store: Store) -> None:
     run = learned(store)
-    trial = store.trials.begin(begin_solving(store), run.id, trial_spec())
-    (result,) = store.trials.trials()
-    assert result.outcome is None  # it has not ended
-    store.trials.end(trial, TrialEnd(Outcome.NO_ROW, 3, 41.5, (Reason("probable", 0, 0.5),)))
+    session, reasons = begin_solving(store), (Reason("probable", 0, 0.5),)
+    record = TrialRecord(trial_spec(), (), TrialEnd(Outcome.NO_ROW, 3, 41.5, reasons))
+    (trial,) = store.trials.save_all(session, run.id, [record], {})
     (result,) = store.trials.trials()
     assert (result.outcome, result.steps, result.robot_seconds) == (Outcome.NO_ROW, 3, 41.5)
     assert store.trials.trial(trial).last_reasons == (Reason("probable", 0, 0.5),)
@@ -289,10 +278,10 @@ def test_every_step_is_kept_with_the_row_it_tried(store: Store) -> None:
 def test_the_same_trial_is_not_stored_twice_in_a_session(store: Store) -> None:
     run = learned(store)
     session = begin_solving(store)
-    store.trials.begin(session, run.id, trial_spec())
+    save_trial(store, session, run.id, trial_spec())
     with pytest.raises(Exception, match="UNIQUE constraint failed: trial"):
-        store.trials.begin(session, run.id, trial_spec())
-    store.trials.begin(begin_solving(store), run.id, trial_spec())
+        save_trial(store, session, run.id, trial_spec())
+    save_trial(store, begin_solving(store), run.id, trial_spec())
 
 
 def begin_reproducing(store: Store, robots: int = 2) -> int:
@@ -389,7 +378,7 @@ def test_invalid_trials_count_for_nothing(store: Store) -> None:
         for start, outcome in enumerate((Outcome.SOLVED, Outcome.INVALID, Outcome.NO_ROW), 1)
     ]
     store.trials.save_all(session, run.id, ended, ids)
-    store.trials.begin(session, run.id, trial_spec(1, 4))
+    unfinished_trial(store, session, run.id, trial_spec(1, 4))
     (count,) = store.results.success_counts(session)
     assert (count.trials, count.solved) == (2, 1)
     assert [t.outcome for t in store.trials.trials()] == [*(t.end.outcome for t in ended), None]
