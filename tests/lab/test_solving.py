@@ -8,6 +8,7 @@ from affcli.core.affordance import Affordance
 from affcli.core.identity import Component
 from affcli.core.records import LearningRunInfo, StoredStep
 from affcli.core.specs import Counters
+from affcli.core.task import ALL_STARTS
 from affcli.core.trial import Outcome, StepRecord
 from affcli.errors import AffcliError, BadInputError, UsageError
 from affcli.lab.replaying import replay_trial
@@ -139,15 +140,21 @@ def test_one_start_alone(store: Store, run: LearningRunInfo) -> None:
 @pytest.mark.parametrize(
     ("goal", "start", "planner", "error", "says"),
     [
-        ("5", None, NARROW, UsageError, "no goal '5'; did you mean 1 or 2 or 3 or 4"),
+        ("5", ALL_STARTS, NARROW, UsageError, "no goal '5'; did you mean 1 or 2 or 3 or 4"),
         ("1", "north", NARROW, UsageError, "no start 'north'"),
-        ("1", None, Component("oracle"), BadInputError, "planner oracle: this affcli has no such"),
-        ("1", None, replace(NARROW, version=3), BadInputError, "version 1 of it"),
+        (
+            "1",
+            ALL_STARTS,
+            Component("oracle"),
+            BadInputError,
+            "planner oracle: this affcli has no such",
+        ),
+        ("1", ALL_STARTS, replace(NARROW, version=3), BadInputError, "version 1 of it"),
     ],
 )
 def test_what_is_not_there_is_refused_before_anything_is_recorded(
     goal: str,
-    start: str | None,
+    start: str,
     planner: Component,
     error: type[AffcliError],
     says: str,
