@@ -64,9 +64,10 @@ class SimulatedSight:
             rng: decides the noise of its observations.
         """
         if self._eye is not None:
+            eye = self._eye()
             from affcli.perception.camera_sensor import CameraSensor
 
-            return CameraSensor(look, self._eye(), rng)
+            return CameraSensor(look, eye, rng)
         noise = self._noise
         if self._kind == "exact":
             noise = replace(noise, position_noise=0.0, color_noise=0.0)

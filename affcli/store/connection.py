@@ -1,6 +1,7 @@
 """Transactions on one SQLite connection: they wait for locks, and commit whole or not at all."""
 
 import sqlite3
+import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -158,7 +159,7 @@ def _checked(name: str, value: Any) -> Any:
             "the database"
         )
     if isinstance(value, str) and not value.isprintable() and name not in JSON_COLUMNS:
-        return one_line(value, len(value))
+        return one_line(value, sys.maxsize)
     return value
 
 

@@ -32,7 +32,7 @@ OF_NOTHING: dict[str, tuple[tuple[str, ...], str]] = {
         "the table with the t-hook; the bare arm reaches from 0.0 to 18.8",
     ),
     "workspace with a stick": (("workspace", "--tool", "stick"), "the table with the stick; "),
-    "tools": (("tools",), "five tools, and a t-hook that became l-hook: "),
+    "tools": (("tools",), "5 tools, and a t-hook that became l-hook: "),
     "tools, another break": (("tools", "--becomes", "stick"), "a t-hook that became stick: "),
 }
 MAGIC = {".png": b"\x89PNG\r\n", ".svg": b"<?xml ", ".pdf": b"%PDF-"}

@@ -361,7 +361,7 @@ def test_whatever_words_stand_in_the_database_they_command_nothing(text: str, us
             assert all(line.isprintable() for line in ended.out.splitlines())
         assert done("table", *args, "--json", "--db", used).json
     (first, *_) = listed(used, "--all-runs")
-    assert (first["tool"], first["behavior"]) == (one_line(text, 10_000),) * 2
+    assert (first["tool"], first["behavior"]) == (one_line(text, 20_000),) * 2
     assert rows(used, "SELECT count(*) FROM affordance") != [(0,)]
 
 
