@@ -13,7 +13,7 @@ from affcli.analysis.paper import (
     papers_break,
     papers_cell,
 )
-from affcli.analysis.reproduction import Reproduction, Solved
+from affcli.analysis.reproduction import Reproduction
 from affcli.analysis.statistics import ENOUGH_ROBOTS, Spread
 from affcli.core.records import SessionInfo, TrialInfo
 from affcli.core.specs import Protocol
@@ -88,17 +88,15 @@ def results_of_many(result: Reproduction) -> Results:
     for kind, goals in result.others.items():
         if (kind.task_set, kind.planner) != (spec.task_set, str(spec.planner)):
             continue
-        alone = {goal: _alone(solved, result.robots) for goal, solved in goals.items()}
+        alone = {
+            goal: Beside(None, solved.counts, round(solved.tried / result.robots))
+            for goal, solved in goals.items()
+        }
         if kind.protocol is Protocol.EXTENSION_OF_REACH:
             cells |= {(kind.tool, goal): beside for goal, beside in alone.items()}
         elif broken is None:
             broken = _sum(alone.values())
     return Results(result.session, result.robots, {}, cells, total or _sum(cells.values()), broken)
-
-
-def _alone(solved: Solved, robots: int) -> Beside:
-    """Return successes that the paper has nothing beside."""
-    return Beside(None, solved.counts, round(solved.tried / robots))
 
 
 def _sum(cells: Collection[Beside]) -> Beside | None:

@@ -4,7 +4,6 @@ import json
 from types import MappingProxyType
 
 from affcli.core.behavior import GRASP
-from affcli.core.identity import Component
 from affcli.core.results import SuccessCount
 from affcli.core.specs import (
     BROKEN_SHAPE,
@@ -102,9 +101,7 @@ def other_parts(spec: LearningSpec | SessionSpec) -> dict[str, str]:
     named = {"world": (spec.world, WORLD), "explorer": (spec.explorer, EXPLORER)}
     if isinstance(spec, SessionSpec):
         named["planner"] = (spec.planner, PLANNER)
-    return parts | {kind: str(part) for kind, (part, own) in named.items() if _other(part, own)}
-
-
-def _other(part: Component, own: str) -> bool:
-    """Tell whether a part is not the paper's; the version of ours does not matter."""
-    return part.name != own or bool(part.params)
+    # The version of ours does not matter.
+    return parts | {
+        kind: str(part) for kind, (part, own) in named.items() if part.name != own or part.params
+    }

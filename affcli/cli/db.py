@@ -53,10 +53,10 @@ def check(*, database: Database = DEFAULT_DATABASE, as_json: AsJson = False) -> 
     if as_json:
         show_json([asdict(finding) for finding in findings])
     else:
-        rows = []
-        for finding in findings:
-            held = "yes" if not finding.wrong else f"{finding.wrong} times not"
-            rows.append((finding.what, held, one_line(finding.example)))
+        rows = [
+            (one.what, f"{one.wrong} times not" if one.wrong else "yes", one_line(one.example))
+            for one in findings
+        ]
         show_rows(("what must hold", "does", "for example"), rows, left=("what must hold",))
     if wrong:
         say(f"{one_line(database, 1000)}: not as it must be; restore a copy of the file")

@@ -1,7 +1,6 @@
 """``affcli table export``: rows and records for other programs, as CSV, JSON or Parquet."""
 
-import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated, Any
@@ -115,22 +114,13 @@ def _checked_format(kind: str | None, out: Path) -> "lab.table.Write[bytes]":
     return FORMATS[form]
 
 
-def _csv(columns: Sequence[Column], rows: Iterable[tuple[Any, ...]]) -> bytes:
-    """Write CSV."""
-    return _encoded(csv_lines([column.name for column in columns], rows))
-
-
-def _json(columns: Sequence[Column], rows: Iterable[tuple[Any, ...]]) -> bytes:
-    """Write JSON."""
-    return _encoded(json_lines([column.name for column in columns], rows))
-
-
-def _encoded(lines: Iterable[str]) -> bytes:
-    """Return lines in UTF-8, without ever holding them all as Python text."""
-    page = io.BytesIO()
-    for line in lines:
-        page.write(line.encode())
-    return page.getvalue()
+def _as_text(
+    lines: Callable[[list[str], Iterable[Any]], Iterable[str]],
+) -> "lab.table.Write[bytes]":
+    """Return what writes lines in UTF-8."""
+    return lambda columns, rows: b"".join(
+        line.encode() for line in lines([column.name for column in columns], rows)
+    )
 
 
 def _parquet(columns: Sequence[Column], rows: Iterable[tuple[Any, ...]]) -> bytes:
@@ -138,4 +128,8 @@ def _parquet(columns: Sequence[Column], rows: Iterable[tuple[Any, ...]]) -> byte
     return report.parquet_table.parquet_bytes(columns, rows)
 
 
-FORMATS: "dict[str, lab.table.Write[bytes]]" = {"csv": _csv, "json": _json, "parquet": _parquet}
+FORMATS: "dict[str, lab.table.Write[bytes]]" = {
+    "csv": _as_text(csv_lines),
+    "json": _as_text(json_lines),
+    "parquet": _parquet,
+}

@@ -182,7 +182,8 @@ def _closed_form(seen: Array, places: Array, sensor: ImageSensor) -> list[Array]
         for focal_length, distance in guesses:
             shift = rotation @ np.array([*base, 0.0])
             translation = np.array([tx, ty, distance]) - shift
-            starts.append(np.concatenate([_vector(rotation), translation, [focal_length, 0.0]]))
+            turned = Rotation.from_matrix(rotation).as_rotvec()
+            starts.append(np.concatenate([turned, translation, [focal_length, 0.0]]))
     if not starts:
         raise BadInputError("the markers fit no view of a plane from in front of it")
     return starts
@@ -259,7 +260,7 @@ def _camera(parameters: Array, sensor: ImageSensor) -> Camera:
         sensor,
         float(parameters[6]),
         float(parameters[7]),
-        tuple(map(tuple, _matrix(parameters[:3]).tolist())),
+        tuple(map(tuple, Rotation.from_rotvec(parameters[:3]).as_matrix().tolist())),
         tuple(parameters[3:6].tolist()),
     )
 
@@ -274,15 +275,3 @@ def _deviation(jacobian: Array, parameter: int, rms: float) -> float:
         return math.inf
     variance = float(np.sum((v[:, parameter] / singular) ** 2)) / float(scale[parameter]) ** 2
     return max(rms, LEAST_ERROR) * math.sqrt(variance)
-
-
-def _vector(rotation: Array) -> Array:
-    """Return a rotation's axis times its angle (rad)."""
-    vector: Array = Rotation.from_matrix(rotation).as_rotvec()
-    return vector
-
-
-def _matrix(vector: Array) -> Array:
-    """Return the rotation (3, 3) about an axis by its length (rad)."""
-    matrix: Array = Rotation.from_rotvec(vector).as_matrix()
-    return matrix

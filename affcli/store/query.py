@@ -52,6 +52,14 @@ write other files."""
 
 FORBIDDEN_FUNCTIONS = frozenset({"load_extension", "fts3_tokenizer", "readfile", "writefile"})
 
+MENDED = {
+    sqlite3.SQLITE_ERROR: "{error}",
+    sqlite3.SQLITE_AUTH: "{error}; only SELECT is allowed, the database is opened to be read",
+    sqlite3.SQLITE_INTERRUPT: "stopped after {seconds} s; ask for less (where, limit)",
+    sqlite3.SQLITE_TOOBIG: f"a value of more than {LARGEST_VALUE} bytes; ask for less",
+}
+"""What is said of what a person can mend, by SQLite's result code."""
+
 
 @dataclass(frozen=True, slots=True)
 class QueryResult:
@@ -146,20 +154,8 @@ def _explain(error: Exception, max_seconds: float) -> NoReturn:
     code = result_code(error) & PRIMARY
     if not code:  # from Python's driver: two statements, a NUL, half a character
         raise BadInputError(f"sql: {one_line(error)}; give one SELECT") from error
-    match code:
-        case sqlite3.SQLITE_ERROR:
-            raise BadInputError(f"sql: {one_line(error)}") from error
-        case sqlite3.SQLITE_AUTH:
-            raise BadInputError(
-                f"sql: {one_line(error)}; only SELECT is allowed, the database is opened to be read"
-            ) from error
-        case sqlite3.SQLITE_INTERRUPT:
-            raise BadInputError(
-                f"sql: stopped after {max_seconds:g} s; ask for less (where, limit)"
-            ) from error
-        case sqlite3.SQLITE_TOOBIG:
-            raise BadInputError(
-                f"sql: a value of more than {LARGEST_VALUE} bytes; ask for less"
-            ) from error
-        case _:
-            raise error
+    remedy = MENDED.get(code)
+    if remedy is None:
+        raise error
+    words = remedy.format(error=one_line(error), seconds=f"{max_seconds:g}")
+    raise BadInputError(f"sql: {words}") from error
