@@ -104,7 +104,7 @@ def settings_words(settings: str) -> str:
 
 
 def parts_words(spec: LearningSpec | SessionSpec) -> str:
-    """Return the parts of a run that are not the paper's: ``binding grasp 3 15 deg``; empty for none."""
+    """Return the parts of a run that are not the paper's: ``binding grasp 3 15 deg``."""
     parts = other_parts(spec)
     if "binding" in parts:
         parts["binding"] = call_words(spec.binding)
