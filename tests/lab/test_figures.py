@@ -45,16 +45,16 @@ def run(store: Store) -> LearningRunInfo:
 def test_a_film_has_the_steps_as_they_are_stored(store: Store, run: LearningRunInfo) -> None:
     counted(breaking(store, run, "l-hook", 0))
     for info in store.trials.trials():
-        film, stored = film_of(store, info.id), store.trials.steps(info.id)
+        film = film_of(store, info.id)
+        assert film.steps == store.trials.steps(info.id)
         assert [s.number for s in film.steps] == list(range(1, (info.steps or 0) + 1))
-        assert film.steps == stored
         assert not any(shown.replicated and not shown.moved for shown in film.steps)
         broken = info.spec.protocol is Protocol.TOOL_ADAPTATION
         assert [part.name for part in film.missing] == ["right bar", "right hook"] * broken
         assert film.ending == info.outcome
         assert film.goal == info.spec.task.goal
         if film.steps:
-            assert film.steps[0].attractor_start == pytest.approx(film.puck, abs=1e-9)
+            assert film.steps[0].true_start == pytest.approx(film.puck, abs=1e-9)
 
 
 def test_steps_that_a_trial_does_not_have_are_refused(store: Store, run: LearningRunInfo) -> None:
