@@ -3,7 +3,7 @@
 from affcli.analysis.adaptation import AdaptationCourse
 from affcli.analysis.breaking import missing_side
 from affcli.core.records import SessionInfo
-from affcli.errors import UsageError
+from affcli.errors import DatabaseError, UsageError
 from affcli.lab.sessions import finished_session
 from affcli.store import Store
 
@@ -49,5 +49,10 @@ def _missing_side(store: Store, session: SessionInfo, tool: str, shape: str) -> 
     learned = store.learning.runs(session_id=session.id, tool=tool)
     run = learned[0].id if learned else store.results.trials(session_id=session.id)[0].run_id
     trials = store.trials.trials(session_id=session.id, run_id=run)
-    broken = next(trial for trial in trials if trial.spec.shape == shape)
+    broken = next((trial for trial in trials if trial.spec.shape == shape), None)
+    if broken is None:
+        raise DatabaseError(
+            f"session {session.id} names a broken tool that no trial of it held; restore a copy of "
+            "the database"
+        )
     return missing_side(broken.learned.held, broken.spec.held)
