@@ -14,6 +14,7 @@ from affcli.core.task import Task
 from affcli.core.tool import Tool
 from affcli.core.world import World
 from affcli.errors import BadInputError, DatabaseError, one_line
+from affcli.simulation.sensing import require_camera
 
 
 class RunParts(Parts):
@@ -32,9 +33,11 @@ class RunParts(Parts):
         """Return the parts that a user named, each as ``name:key=value``; the paper's for the rest.
 
         Raises:
-            UsageError: no part of that name.
+            UsageError: no part of that name, or the camera's packages are missing.
             BadInputError: a wrong parameter.
         """
+        if settings.sensor.kind == "camera":
+            require_camera()
         usual = registry.DEFAULTS
         return cls(
             settings=canonical_json(settings.differing()),
