@@ -34,7 +34,7 @@ from affcli.core.records import LearningRunInfo
 from affcli.errors import UsageError, one_line
 from affcli.lab.drawing import require_figures
 from affcli.report import figures
-from affcli.report.curves import curves_title, robots_title
+from affcli.report.figure_titles import curves_title, robots_title
 from affcli.simulation.arm import reach_at
 from affcli.simulation.tasks.extension_of_reach import extension_of_reach
 

@@ -20,9 +20,8 @@ from affcli.cli.options import (
 from affcli.cli.terminal import say
 from affcli.errors import BadInputError, one_line
 from affcli.report import figures
-from affcli.report.adaptation import course_note, course_title
+from affcli.report.figure_titles import course_note, course_title, results_note, results_title
 from affcli.report.film import MOST_NAMED, shown_of
-from affcli.report.results import results_note, results_title
 
 Session = Annotated[
     int | None,

@@ -25,15 +25,12 @@ class SessionInfo:
         spec: what it is a function of.
         versions: what it was made with.
         status: ``running`` or ``done``.
-        started_at, finished_at: ISO text, UTC.
     """
 
     id: int
     spec: SessionSpec
     versions: dict[str, str]
     status: str
-    started_at: str
-    finished_at: str | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +49,6 @@ class LearningRunInfo:
         redraws: wrist positions drawn again because the attractor was in the way.
         robot_seconds: the robot clock.
         checkpoint: what it needs to go on; None at the beginning and when done.
-        started_at, finished_at: ISO text, UTC.
     """
 
     id: int
@@ -66,8 +62,6 @@ class LearningRunInfo:
     redraws: int
     robot_seconds: float
     checkpoint: dict[str, Any] | None
-    started_at: str
-    finished_at: str | None
 
 
 class ChangedPart(NamedTuple):

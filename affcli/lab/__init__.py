@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from affcli.lab import affordance_views as affordance_views
     from affcli.lab import breaking as breaking
     from affcli.lab import film_strips as film_strips
-    from affcli.lab import filming as filming
     from affcli.lab import learning as learning
     from affcli.lab import learning_curves as learning_curves
     from affcli.lab import overview as overview

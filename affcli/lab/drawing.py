@@ -1,15 +1,21 @@
 """Figures: what must be installed to draw them."""
 
+import logging
+import os
+from importlib import import_module
 from importlib.util import find_spec
 
 from affcli.errors import UsageError
-from affcli.report.figures.loading import load_matplotlib
 
 FIGURE_PACKAGES = ("matplotlib", "PIL")
 
 
 def require_figures() -> None:
-    """Make sure that the packages which draw figures are installed, and load Matplotlib.
+    """Make sure that the packages which draw figures are installed, and load Matplotlib so that
+    what is around the program decides nothing.
+
+    A notebook exports the name of a backend, which programs that it starts may lack. Where nobody
+    may write a cache, Matplotlib says so, each time.
 
     Raises:
         UsageError: one is missing.
@@ -19,4 +25,6 @@ def require_figures() -> None:
         raise UsageError(
             "figures need Matplotlib and Pillow; install them: pip install 'affcli[figures]'"
         )
-    load_matplotlib()
+    os.environ.pop("MPLBACKEND", None)
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
+    import_module("matplotlib")

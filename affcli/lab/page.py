@@ -1,7 +1,6 @@
 """Reading what the page shows: one robot's tools and trials, and what many robots gave."""
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 
 from affcli.analysis.paper import TOOLS
 from affcli.analysis.reproduction import Reproduction
@@ -14,16 +13,6 @@ from affcli.lab.replaying import replay_trial
 from affcli.report.page.content import Broken, Content, LearnedRows
 from affcli.report.words import in_order
 from affcli.store import Store
-
-
-@dataclass(frozen=True, slots=True)
-class _Life:
-    """One robot: what it learned and which of its trials are shown."""
-
-    name: str
-    runs: Sequence[LearningRunInfo]
-    trials: Sequence[TrialInfo]
-    left_out: int
 
 
 def content_of(
@@ -45,28 +34,27 @@ def content_of(
         UsageError: there is nothing to show, or no such robot or reproduction.
     """
     result = _reproduction(store, session)
-    life = _life(store, robot, session, result)
+    name, runs, trials, left_out = _life(store, robot, session, result)
     tools = [
-        LearnedRows(run, {row.id: row.row for row in store.learning.rows(run.id)})
-        for run in life.runs
+        LearnedRows(run, {row.id: row.row for row in store.learning.rows(run.id)}) for run in runs
     ]
     replays, not_replayed = [], {}
-    for number, trial in enumerate(life.trials, 1):
+    for number, trial in enumerate(trials, 1):
         # What this affcli cannot do again is said on the page, and the rest is shown.
         try:
             replays.append(replay_trial(store, trial.id))
         except AffcliError as error:
             not_replayed[trial.id] = str(error)
-        done(number, len(life.trials))
-    versions = life.runs[-1].versions
+        done(number, len(trials))
+    versions = runs[-1].versions
     return Content(
         database=one_line(store.path.name),
-        robot=life.name,
+        robot=name,
         reproduction=result,
         tools=tools,
         replays=replays,
         not_replayed=not_replayed,
-        left_out=life.left_out,
+        left_out=left_out,
         broken=_broken(tools, replays),
         versions={one_line(name): one_line(version) for name, version in versions.items()},
     )
@@ -87,15 +75,15 @@ def _reproduction(store: Store, session: int | None) -> Reproduction | None:
 
 def _life(
     store: Store, robot: int | None, session: int | None, result: Reproduction | None
-) -> _Life:
-    """Return the robot that is to be shown."""
+) -> tuple[str, Sequence[LearningRunInfo], Sequence[TrialInfo], int]:
+    """Return who is to be shown: the name, what it learned, its trials, how many are left out."""
     latest = _latest_runs(store)
     if latest and robot is None and session is None:
         every = [t for run in latest for t in store.trials.trials(run_id=run.id)]
         trials = _latest(every, [run.id for run in latest])
         seeds = sorted({run.spec.seed for run in latest})
         name = f"the robot of seed {', '.join(map(str, seeds))}"
-        return _Life(name, latest, trials, len(every) - len(trials))
+        return name, latest, trials, len(every) - len(trials)
     if result is None:
         where = one_line(store.path)
         if robot is not None:
@@ -116,7 +104,7 @@ def _life(
         )
     name = f"robot {number} of {result.robots}, seed {of.spec.seed}"
     of_robot = [t for run in runs for t in store.trials.trials(run_id=run.id)]
-    return _Life(name, runs, sorted(of_robot, key=lambda t: t.id), 0)
+    return name, runs, sorted(of_robot, key=lambda t: t.id), 0
 
 
 def _latest_runs(store: Store) -> list[LearningRunInfo]:

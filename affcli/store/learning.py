@@ -3,6 +3,7 @@
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import sqlalchemy as sa
@@ -11,7 +12,8 @@ from affcli.core.affordance_table import AffordanceTable
 from affcli.core.records import AlikeRun, ChangedPart, LearningRunInfo, StepScene, StoredRow
 from affcli.core.replay import Difference
 from affcli.core.specs import LearningSpec, LearningStep, RowStarts
-from affcli.errors import DatabaseError, UsageError
+from affcli.core.trial import Attempt
+from affcli.errors import DatabaseError, UsageError, one_line
 from affcli.store import reading, rows
 from affcli.store.comparing import by_number, differences
 from affcli.store.connection import Database, insert_many, insert_one, mappings, numbered
@@ -330,6 +332,38 @@ def insert_steps(
     insert_many(connection, behavior, [rows.behavior_row(run_id, *step) for step in steps])
     insert_many(connection, affordance, [rows.affordance_row(run_id, tool, row) for row in made])
     return len(made)
+
+
+def count_use(connection: sa.Connection, path: Path, use: Attempt, row_id: int, saved: str) -> None:
+    """Move the stored counters of a row from before to after one use of it.
+
+    Args:
+        connection: in the transaction that saves the record of the use.
+        path: the database, for the message.
+        use: what was done with the row.
+        row_id: the row in the store.
+        saved: what was saved before, for the message.
+
+    Raises:
+        DatabaseError: the stored counters are not those from before the use.
+    """
+    changed = connection.execute(
+        sa.update(affordance)
+        .filter_by(
+            id=row_id,
+            times_used=use.row.times_used,
+            times_successful=use.row.times_successful,
+        )
+        .values(
+            times_used=use.times_used_after,
+            times_successful=use.times_successful_after,
+        )
+    )
+    if changed.rowcount != 1:
+        raise DatabaseError(
+            f"{one_line(path)}: another process changed the counters of affordance "
+            f"{row_id} meanwhile; the {saved} before are saved; run the command again"
+        )
 
 
 def _the_run(spec: LearningSpec, session_id: int | None) -> sa.Select[Any]:

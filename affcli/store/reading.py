@@ -174,7 +174,7 @@ def learning_run(row: Columns) -> LearningRunInfo:
     """Return a learning run; `row` has the definition of its tool too."""
     names = (
         *("id", "session_id", "status", "behaviors", "rows", "resets", "redraws"),
-        *("robot_seconds", "started_at", "finished_at"),
+        "robot_seconds",
     )
     with reading_what_was_written(f"learning run {row['id']}"):
         return LearningRunInfo(
@@ -195,9 +195,8 @@ def session(row: Columns) -> SessionInfo:
             task_set=row["task_set"],
             **_parts(row),
         )
-        names = ("id", "status", "started_at", "finished_at")
         versions = dict(json.loads(row["versions"]))
-        return SessionInfo(spec=spec, versions=versions, **{name: row[name] for name in names})
+        return SessionInfo(row["id"], spec, versions, row["status"])
 
 
 def trial(row: Columns, learned: Mapping[int, LearningSpec]) -> TrialInfo:

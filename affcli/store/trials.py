@@ -15,8 +15,7 @@ from affcli.errors import UsageError
 from affcli.store import reading, rows
 from affcli.store.comparing import by_number, differences
 from affcli.store.connection import Database, insert_many, insert_one, mappings, numbered
-from affcli.store.counting import count_use
-from affcli.store.learning import insert_tools, selected_runs
+from affcli.store.learning import count_use, insert_tools, selected_runs
 from affcli.store.packing import PackedTrial, pack_trial
 from affcli.store.tables import (
     affordance,

@@ -11,8 +11,7 @@ from affcli.core.trial import Truth
 from affcli.core.verification import Evidence, ReplicationRecord, decided_after
 from affcli.store import reading, rows
 from affcli.store.connection import Database, insert_many, insert_one
-from affcli.store.counting import count_use
-from affcli.store.learning import insert_tools
+from affcli.store.learning import count_use, insert_tools
 from affcli.store.tables import affordance, learning_run, replication, trial, verification
 
 Try = tuple[ReplicationRecord, Truth | None, int]

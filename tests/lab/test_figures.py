@@ -16,7 +16,7 @@ from affcli.lab.film_strips import film_of
 from affcli.lab.overview import reproduction_of
 from affcli.lab.results import results_in
 from affcli.lab.sessions import finished_session
-from affcli.report.results import results_title
+from affcli.report.figure_titles import results_title
 from affcli.store import Store
 from tests.lab.quick import (
     IMPATIENT,

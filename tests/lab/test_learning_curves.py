@@ -4,7 +4,7 @@ import pytest
 
 from affcli.errors import UsageError
 from affcli.lab.learning_curves import curves_of, curves_of_robots
-from affcli.report.curves import curves_title, robots_title
+from affcli.report.figure_titles import curves_title, robots_title
 from affcli.simulation.tools.paper import TOOL_PARTS
 from affcli.store import Store
 from tests.lab.quick import LEISURELY, counted, now, reproducing, spec_of, stored, taken

@@ -16,7 +16,6 @@ from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Observation
 from affcli.core.task import GoalRegion
 from affcli.core.tool import Color, ToolName
-from affcli.planning import selection
 from affcli.planning.nested_query import (
     NestedQuery,
     consistent_with_colors,
@@ -193,24 +192,9 @@ def assert_cut_like_any_other(sizes: list[float]) -> None:
     assert found.tolist() == sorted(oldest_first[: math.ceil(n / 5)])
 
 
-@pytest.mark.parametrize("sample", [2, 3, 5, 16, 33])
-def test_the_short_cut_for_long_tables_leaves_the_same_rows(
-    monkeypatch: pytest.MonkeyPatch, sample: int
-) -> None:
-    """However the k-th smallest distance is found, also where a sample misleads, which a small
-    one of few rows often does."""
-    monkeypatch.setattr(selection, "LONG", sample)
-    monkeypatch.setattr(selection, "SAMPLE", sample)
-    rng = np.random.default_rng(sample)
-    for _ in range(200):
-        n = int(rng.integers(sample, 70))
-        sizes = rng.integers(0, int(rng.integers(1, 100)), n) * EIGHTH
-        assert_cut_like_any_other(sizes.tolist())
-
-
 @pytest.mark.parametrize("order", ["as they come", "nearest first", "farthest first", "all alike"])
-def test_a_table_long_enough_for_the_short_cut_is_cut_like_any_other(order: str) -> None:
-    n = selection.LONG + 13
+def test_a_long_table_is_cut_like_any_other(order: str) -> None:
+    n = 8_205
     sizes = np.random.default_rng(0).integers(0, 400, n) * EIGHTH
     if order != "as they come":
         sizes.sort()

@@ -64,8 +64,6 @@ def learned_run(number: int, spec: LearningSpec, **changes: Any) -> LearningRunI
         redraws=0,
         robot_seconds=3601.2,
         checkpoint=None,
-        started_at=NOW,
-        finished_at=NOW,
     )
     return replace(run, **changes)
 
@@ -116,7 +114,7 @@ def session_of(number: int, *, kind: str = "reproduce", **changes: Any) -> Sessi
         settings="{}",
         task_set=TASK_SET,
     )
-    return SessionInfo(number, replace(spec, **changes), {}, "done", NOW, NOW)
+    return SessionInfo(number, replace(spec, **changes), {}, "done")
 
 
 GROUPS = (

@@ -20,9 +20,9 @@ from affcli.analysis.statistics import Spread
 from affcli.core.records import TrialInfo
 from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome
+from affcli.report.figure_titles import results_title
 from affcli.report.figures.canvas import INK, SKY, TWO_COLUMNS, VERMILION, encoded
 from affcli.report.figures.results import results_figure
-from affcli.report.results import results_title
 from tests.report.hand_made import FOUR_ROBOTS, MANY_ROBOTS, RUNS, session_of, trial_info
 
 

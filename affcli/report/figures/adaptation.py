@@ -11,7 +11,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator, PercentFormatter
 
 from affcli.analysis.adaptation import AdaptationCourse, MeanProbability, Share
-from affcli.report.adaptation import course_note, course_title
+from affcli.report.figure_titles import course_note, course_title
 from affcli.report.figures.canvas import BLUE, FAINT, ONE_COLUMN, VERMILION, canvas, head
 from affcli.report.figures.key import draw_key
 

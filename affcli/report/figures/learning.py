@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from affcli.analysis.curves import Curve, ToolCurves
-from affcli.report.curves import run_name
+from affcli.report.figure_titles import run_name
 from affcli.report.figures.canvas import (
     BLUE,
     GREEN,

@@ -13,10 +13,10 @@ from matplotlib.ticker import MaxNLocator
 
 from affcli.analysis.comparison import Beside, Results
 from affcli.analysis.paper import STARTS
+from affcli.report.figure_titles import results_note, results_title
 from affcli.report.figures.canvas import INK, PALE, SKY, TWO_COLUMNS, VERMILION, canvas, head
 from affcli.report.figures.key import draw_key
 from affcli.report.figures.maps import columns_for
-from affcli.report.results import results_note, results_title
 
 MOST_BESIDE = 4
 """Goals in a row of the page."""

@@ -21,8 +21,7 @@ def tool_words(name: str) -> str:
 
 def behavior_words(call: BehaviorCall) -> str:
     """Return a behavior's name as a sentence begins: ``Extend arm``."""
-    name = shown(call.name)
-    return name[:1].upper() + name[1:]
+    return tool_words(call.name)
 
 
 def call_words(call: BehaviorCall) -> str:
