@@ -158,7 +158,7 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
     "Data": (
         Command("sql", "sql:sql", "Ask the database one question in SQL."),
         DB,
-        Command("doctor", "doctor:doctor", "Say whether all is here that affcli needs."),
+        Command("doctor", "doctor:doctor", "Say whether everything is here that affcli needs."),
         Command("cite", "cite:cite", "Say how to cite the paper and this software, in BibTeX."),
     ),
     "Extend": (

@@ -82,8 +82,8 @@ def affordances(
 ) -> None:
     """Draw what a tool affords, as arrows over its outline.
 
-    As in Fig. 6, an arrow a row: where the attractor was from the wrist, and how it moved. Of the
-    latest finished run of the T-hook if nothing else is said.
+    As in Fig. 6, an arrow for each row: where the attractor was from the wrist, and how it moved.
+    Of the latest finished run of the T-hook if nothing else is said.
 
     With --compare a row is kept when the other run has one of the same behavior and distance that
     starts within 1.5 in of it and moves within 40 degrees of it; else it is lost, or won: some 8 %

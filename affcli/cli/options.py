@@ -31,7 +31,7 @@ FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 
 
 def checked_sensor(kind: str) -> SensorKind:
-    """Return the kind of sensor asked for; UsageError when there is none such."""
+    """Return the kind of sensor asked for; UsageError when there is no such kind."""
     return one_of("sensor", kind, SENSOR_KINDS)
 
 
