@@ -188,12 +188,17 @@ def learning(
     run: Annotated[
         list[int] | None,
         typer.Option(
-            "--run", help="Learning runs, instead of all.", metavar="ID", callback=_checked_ids
+            "--run",
+            help="Only this learning run; several times for several.",
+            metavar="ID",
+            callback=_checked_ids,
         ),
     ] = None,
     tool: Annotated[
         list[str] | None,
-        typer.Option("--tool", help="Only those of these.", metavar="NAME", callback=checked_tools),
+        typer.Option(
+            "--tool", help="Only runs of this tool.", metavar="NAME", callback=checked_tools
+        ),
     ] = None,
     session: Annotated[
         int | None,
@@ -211,7 +216,7 @@ def learning(
 
     Rows made, and the share of behaviors that had an effect so far.
 
-    A line a learning run; with --session the mean of many robots and the central 95 % of them.
+    One line for each learning run; with --session the mean of many robots and the central 95 % of them.
     """
     if run and (tool or session is not None):
         raise UsageError("give --run alone, without --tool and --session")
