@@ -216,7 +216,8 @@ def learning(
 
     Rows made, and the share of behaviors that had an effect so far.
 
-    One line for each learning run; with --session the mean of many robots and the central 95 % of them.
+    One line for each learning run; with --session the mean of many robots and the central 95 % of
+    them.
     """
     if run and (tool or session is not None):
         raise UsageError("give --run alone, without --tool and --session")

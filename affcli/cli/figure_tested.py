@@ -108,8 +108,8 @@ def adaptation(
 ) -> None:
     """Draw how robots adapt to a broken tool, step by step.
 
-    It shows the share of tries on lost affordances, and the mean replication probability of the rows
-    on the missing side, in a session of affcli break-tool or a reproduction.
+    It shows the share of tries on lost affordances, and the mean replication probability of the
+    rows on the missing side, in a session of affcli break-tool or a reproduction.
     """
     check_out(out, force=force)
     with opened(database) as store:
