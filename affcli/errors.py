@@ -6,7 +6,7 @@ an ``AffcliError`` is a bug and keeps its traceback.
 
 
 class AffcliError(Exception):
-    """Base of every error that a user can cause and mend."""
+    """Base of every error that a user can cause and put right."""
 
     exit_code = 1
 

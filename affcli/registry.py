@@ -62,7 +62,7 @@ def part(kind: Kind, name: str) -> Part:
     """Return a part by name.
 
     Raises:
-        UsageError: there is none such; the message gives the nearest names.
+        UsageError: there is no such part; the message gives the nearest names.
     """
     known = parts(kind)
     return known[one_of(kind.removesuffix("s"), name, known, f" (affcli list {kind})")]

@@ -1,4 +1,4 @@
-"""What may befall a laboratory and its files, and what must happen then: the list we answer to.
+"""What can happen to a laboratory and its files, and what must follow: tests name each entry.
 
 A test that is about one of them says so with ``@pytest.mark.fault(number)``; `tests/test_faults.py`
 sees to it that each has one. Exit codes: 2 usage, 3 database, 4 bad input. Always: one line on

@@ -1,125 +1,285 @@
-"""What the README shows is so: queries run, commands and options exist, files are there."""
+"""What the READMEs show is so: commands and queries run, links and files and names are there."""
 
 import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
 import pytest
 
-from affcli.cli.commands import SECTIONS, Group
-from tests.cli.program import done, rows
+import affcli.planning
+import affcli.simulation.tools
+from affcli import __version__, registry
+from affcli.cli.commands import Group
+from affcli.config import known_settings
+from affcli.core.ports import Planner
+from affcli.testing.planner import PlannerContract
+from tests.cli.program import affcli as program
+from tests.cli.program import done, environment, rows
+from tests.readmes import (
+    LISTED,
+    QUOTED,
+    READMES,
+    ROOT,
+    all_commands,
+    anchors,
+    blocks,
+    prose,
+    quoted_commands,
+    steps,
+    table_rows,
+    text_of,
+    words_of,
+)
 
-ROOT = Path(__file__).parents[1]
-README = (ROOT / "README.md").read_text()
-QUERIES = re.findall(r"^```sql\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
-LISTED = [entry for section in SECTIONS.values() for entry in section]
-GROUPS = {entry.name for entry in LISTED if isinstance(entry, Group)}
-QUOTED = re.compile(r"`([^`]+)`")
+COMMANDS = "affcli/cli/README.md"
+DATA = "migrations/README.md"
+CODE = "affcli/README.md"
+CHOICES = "affcli/core/README.md"
+CAMERA = "affcli/perception/README.md"
+OUR_FOLDERS = r"(?:affcli|tests|experiments|migrations)"
+LIGHTER = {
+    "reproduce": ("--robots", "1", "--workers", "1", "--config", "leisurely.toml"),
+    "learn --sensor camera": ("--behaviors", "60"),
+}
+"""Options that are added to commands which would take a minute."""
+EXAMPLES = {"nearest.py": affcli.planning, "hoe.py": affcli.simulation.tools}
+every_readme = pytest.mark.parametrize("readme", READMES)
 
 
-def table_under(heading: str) -> list[list[str]]:
-    """Return the cells of the first table under a heading, without its own headings."""
-    section = README.split(f"\n## {heading}\n", 1)[1].split("\n## ", 1)[0]
-    lines = [line for line in section.splitlines() if line.startswith("|")]
-    return [
-        [cell.strip() for cell in line.strip("|").split(" | ")]
-        for line in lines[2:]
-        if "---" not in line
-    ]
-
-
-@cache
-def help_of(*command: str) -> str:
-    """Return what a command says of itself."""
-    return done(*command, "--help", COLUMNS="200").out
+def example(name: str) -> str:
+    """Return a file that the README of the code shows whole; its first line tells where."""
+    return next(code for code in blocks(CODE, "python") if code.split(":")[0].endswith(name))
 
 
 @pytest.fixture(scope="module")
-def database(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What the README's session leaves, in small."""
+def demo(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder in which `make demo` ran, with what the commands of the READMEs need besides."""
     folder = tmp_path_factory.mktemp("readme")
-    (folder / "few.toml").write_text("[trial]\nmax_steps = 4\n")
-    path = folder / "readme.db"
-    learn = ("learn", "--tool", "t-hook", "--behaviors", "600")
-    done(*learn, "--config", folder / "few.toml", "--db", path)
-    done("solve", "--goal", "2", "--db", path)
-    done("break-tool", "--db", path)
-    return path
+    (folder / ".venv").mkdir()
+    (folder / ".venv" / ".installed").touch()
+    ours = f"{shlex.quote(sys.executable)} -m affcli"
+    made = subprocess.run(
+        [
+            str(shutil.which("make")),
+            "-f",
+            ROOT / "Makefile",
+            "-o",
+            ".venv/.installed",
+            "demo",
+            f"AFFCLI={ours}",
+        ],
+        cwd=folder,
+        env=environment(PYTHONPATH=str(ROOT)),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    (folder / "demo.txt").write_text(made.stdout)
+    shutil.copy(folder / "demo.db", folder / "reproduce.db")
+    (folder / "leisurely.toml").write_text("[motion]\nhold = 100.0\n[trial]\nmax_steps = 2\n")
+    for code in blocks(CHOICES, "toml"):
+        (folder / "noisy.toml").write_text(code)
+    cup = blocks(CAMERA, "toml")[0]
+    assert "30, 110, 200" in cup
+    (folder / "colors.toml").write_text(cup.replace("30, 110, 200", "234, 117, 20"))  # the puck's
+    view = ("camera", "view", "--frame", "--force", "--out")
+    done(*view, "markers.png", "--pattern", cwd=folder)
+    done(*view, "picture.png", cwd=folder)
+    calibrate = ("camera", "calibrate", "markers.png", "--turn", "180", "--origin", "-12.5,9.2")
+    done(*calibrate, "--out", "camera.json", cwd=folder)
+    shutil.copy(folder / "markers.png", folder / "markers.jpg")
+    shutil.copy(folder / "picture.png", folder / "table.jpg")
+    return folder
 
 
-def test_there_are_five_queries_to_try() -> None:
-    assert len(QUERIES) >= 5
+@pytest.fixture
+def with_examples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """The parts that the README of the code adds are there, each a file in its room."""
+    for name, room in EXAMPLES.items():
+        folder = tmp_path / "rooms" / room.__name__
+        folder.mkdir(parents=True)
+        (folder / name).write_text(example(name))
+        monkeypatch.setattr(room, "__path__", [*room.__path__, str(folder)])
+    registry.parts.cache_clear()
+    yield
+    registry.parts.cache_clear()
+    for name, room in EXAMPLES.items():
+        sys.modules.pop(f"{room.__name__}.{name.removesuffix('.py')}", None)
 
 
-@pytest.mark.parametrize("number", range(len(QUERIES)))
-def test_every_query_runs(number: int, database: Path) -> None:
-    """How many rows it finds is up to what the robot did."""
-    ended = done("sql", QUERIES[number], "--db", database)
-    assert ended.err in {"", "no rows\n"}
-    assert isinstance(done("sql", QUERIES[number], "--json", "--db", database).json, list)
+@pytest.fixture
+def workplace(demo: Path, tmp_path: Path, with_examples: None) -> Path:
+    """A copy of the folder of the demo, for one test."""
+    return Path(shutil.copytree(demo, tmp_path / "work"))
 
 
-def commands() -> list[tuple[str, ...]]:
-    """Return the commands of the README's table with the options its row names."""
-    found = []
-    for command, what in table_under("What you can do"):
-        for quoted in QUOTED.findall(command):
-            program, *words = quoted.split()
-            assert program == "affcli"
-            names = [word for word in words if re.fullmatch(r"[a-z-]+", word)]
-            options = re.findall(r"--[a-z-]+", f"{quoted} {what}")
-            subcommand = names[:2] if names[0] in GROUPS else names[:1]
-            found.append((" ".join(subcommand), *dict.fromkeys(options)))
-    return found
+def ran(command: str, workplace: Path) -> str:
+    """Run a command of a README, a long one with less to do; return all that it wrote."""
+    words = shlex.split(command.replace(".venv/bin/", ""))[1:]
+    if "--out" in words or "--html" in words:
+        words += ["--force"] if "--force" in help_of(" ".join(words_of(command))) else []
+    for long, less in LIGHTER.items():
+        if set(long.split()) <= set(words):
+            words += less
+    ended = program(*words, cwd=workplace, AFFCLI_DB="demo.db", COLUMNS="80")
+    assert ended.code == 0, ended
+    return ended.err + ended.out
 
 
-@pytest.mark.parametrize(("command", "options"), [(c, o) for c, *o in commands()])
-def test_every_command_and_option_exists(command: str, options: list[str]) -> None:
-    described = help_of(*command.split())
-    assert described.startswith(f"Usage: affcli {command} ")
+@cache
+def help_of(words: str) -> str:
+    """Return what a command says of itself."""
+    return done(*words.split(), "--help", COLUMNS="200").out
+
+
+def is_whole(command: str) -> bool:
+    """Tell whether a command in the text can be run: others only name what they are about."""
+    words, given = words_of(command), shlex.split(command)
+    if not words or re.search(r"\b[A-Z]{2,}\b|\.\.\.", command):
+        return False
+    needed = {"figure": "--out", "solve": "--goal", "learn": "--tool"}.get(words[0])
+    if needed is not None:
+        return needed in given
+    incomplete = {("replay",), ("sql",), ("table",), ("db",), ("camera",), ("camera", "locate")}
+    return words not in incomplete or len(given) > 1 + len(words)
+
+
+BLOCKS = [
+    pytest.param(block, id=f"{readme} {number}")
+    for readme in READMES
+    for number, block in enumerate(blocks(readme, "console"))
+]
+QUOTED_COMMANDS = [command for readme in READMES for command in quoted_commands(readme)]
+RUNNABLE = {re.sub(r"--out \S+", "", c): c for c in QUOTED_COMMANDS if is_whole(c)}.values()
+
+
+@pytest.mark.parametrize("block", BLOCKS)
+def test_a_session_runs_and_shows_what_the_readme_shows(block: str, workplace: Path) -> None:
+    for step in steps(block):
+        for command in step.command.split(" && "):
+            if command.startswith("affcli "):
+                written = ran(command, workplace).splitlines()
+                assert [line.rstrip() for line in step.shown] == [
+                    line.rstrip() for line in written if step.shown
+                ]
+
+
+@pytest.mark.parametrize("command", RUNNABLE)
+def test_a_command_in_the_text_runs(command: str, workplace: Path) -> None:
+    ran(command, workplace)
+
+
+def test_the_demo_prints_what_the_readme_shows(demo: Path) -> None:
+    (session,) = (b for b in blocks("README.md", "console") if "make demo" in b)
+    shown = next(step.shown for step in steps(session) if step.command == "make demo")
+    printed = (demo / "demo.txt").read_text().replace(f"{sys.executable} -m", ".venv/bin/")
+    printed = printed.replace(str(demo), "/home/you/affcli").replace("bin/ affcli", "bin/affcli")
+    assert printed.splitlines() == shown
+    assert len(shown) <= 12
+    assert "<html" in (demo / "demo.html").read_text()
+
+
+@every_readme
+def test_every_command_and_option_exists(readme: str) -> None:
+    for command in all_commands(readme):
+        described = help_of(" ".join(words_of(command)))
+        for option in re.findall(r"(?<!\S)--[a-z-]+", command):
+            assert re.search(rf"^  (?:-h, )?{option}\b", described, re.MULTILINE), command
+
+
+def rows_of_commands() -> dict[tuple[str, ...], str]:
+    """Return what the README of the commands says of each, by the words that call it."""
+    found = [row for row in table_rows(COMMANDS) if len(row) == 3 and row[0].startswith("`affcli")]
+    return {words_of(row[0].strip("`")): " ".join(row) for row in found}
+
+
+def test_every_command_is_in_the_readme_of_the_commands_in_the_order_of_the_help() -> None:
+    called = [
+        words
+        for entry in LISTED
+        for words in (
+            [(entry.name, command.name) for command in entry.commands]
+            if isinstance(entry, Group)
+            else [(entry.name,)]
+        )
+    ]
+    assert sorted(rows_of_commands()) == sorted(called)
+
+
+@pytest.mark.parametrize("words", rows_of_commands())
+def test_every_option_of_a_command_is_in_its_row_or_shared(words: tuple[str, ...]) -> None:
+    """`table export` takes the options of `table list`, and says so."""
+    told = rows_of_commands()[words]
+    if "those of `table list`" in told:
+        told += rows_of_commands()["table", "list"]
+    shared = " ".join(row[0] for row in table_rows(COMMANDS) if len(row) == 2)
+    options = re.findall(r"^  (?:-h, )?(--[a-z-]+)", help_of(" ".join(words)), re.MULTILINE)
     for option in options:
-        assert re.search(rf"^  {option}\b", described, re.MULTILINE), option
+        assert re.search(rf"`[^`]*{option}\b", f"{told} {shared}"), option
 
 
-def test_every_command_is_in_the_table() -> None:
-    shown = {command for command, *_ in commands()}
-    for entry in LISTED:
-        if isinstance(entry, Group):
-            assert {f"{entry.name} {command.name}" for command in entry.commands} <= shown
-        else:
-            assert entry.name in shown
+@pytest.mark.parametrize("readme", [r for r in READMES if blocks(r, "sql")])
+def test_every_query_finds_something_after_the_demo(readme: str, demo: Path) -> None:
+    for query in blocks(readme, "sql"):
+        found = done("sql", query, "--json", "--db", demo / "demo.db")
+        assert found.json, query
+        assert found.err == ""
 
 
-@pytest.mark.parametrize("option", ["--json", "--db", "--config"])
-def test_the_options_that_several_commands_share(option: str) -> None:
-    assert f"`{option}" in README
-    assert f"  {option}" in help_of("learn")
+def test_there_are_queries_to_try() -> None:
+    assert len(blocks(DATA, "sql")) >= 5
+    assert len(blocks("README.md", "sql")) == 1
 
 
-def named_files() -> list[str]:
-    """Return the paths in the README's tables; a bare file name is beside the one before it."""
-    found: list[str] = []
-    for line in README.splitlines():
-        if not line.startswith("|"):
+@every_readme
+def test_every_link_leads_somewhere(readme: str) -> None:
+    here = (ROOT / readme).parent
+    for target in re.findall(r"\]\(([^)\s]+)\)", prose(readme)):
+        if target.startswith("http"):
             continue
-        folder = ""
+        path, _, anchor = target.partition("#")
+        led = (here / path).resolve() if path else ROOT / readme
+        assert led.exists(), target
+        if anchor:
+            assert anchor in anchors(str(led.relative_to(ROOT))), target
+
+
+@every_readme
+def test_every_file_that_is_named_is_there(readme: str) -> None:
+    """A bare name is beside the path before it in its line, or beside the README."""
+    here = str(Path(readme).parent)
+    for line in text_of(readme).splitlines():
+        folder = here
         for quoted in QUOTED.findall(line):
-            if re.fullmatch(r"(affcli|tests|experiments|migrations)/[\w./-]*", quoted):
-                found.append(quoted)
+            if re.fullmatch(rf"{OUR_FOLDERS}/[\w./-]*", quoted):
                 folder = quoted.rpartition("/")[0]
-            elif re.fullmatch(r"\w+\.(py|toml|md)", quoted) and folder:
-                found.append(f"{folder}/{quoted}")
-    return list(dict.fromkeys(found))
+                assert (ROOT / quoted).exists(), quoted
+                assert not quoted.endswith("/") or (ROOT / quoted).is_dir(), quoted
+            elif re.fullmatch(r"\w+\.(py|toml|md)", quoted):
+                assert (ROOT / folder / quoted).is_file(), (quoted, line)
+    for named in re.findall(rf"{OUR_FOLDERS}/[\w/]+\.(?:py|toml|md)", text_of(readme)):
+        assert (ROOT / named).is_file() or Path(named).name in {*EXAMPLES, "test_nearest.py"}, named
 
 
-@pytest.mark.parametrize("name", named_files())
-def test_every_file_in_a_table_exists(name: str) -> None:
-    assert (ROOT / name).is_dir() if name.endswith("/") else (ROOT / name).is_file()
+def test_the_readme_is_short() -> None:
+    assert len(text_of("README.md").splitlines()) <= 200
+    assert len(text_of("README.md").encode()) <= 14_000
+    assert len(re.findall(r"!\[", text_of("README.md"))) == 1
+
+
+def test_the_readme_leads_to_every_other() -> None:
+    linked = set(re.findall(r"\]\(([\w/]+README\.md)", text_of("README.md")))
+    assert linked == set(READMES) - {"README.md"}
 
 
 def test_the_map_shows_every_room() -> None:
-    section = README.split("\n## The map of the rooms\n", 1)[1]
-    drawn = section.split("```", 2)[1]
+    drawn = blocks(CODE, "")[0]
     shown = {line.split()[0] for line in drawn.splitlines() if line.strip()}
     rooms = {f"{path.name}/" for path in (ROOT / "affcli").iterdir() if any(path.glob("*.py"))}
     assert rooms <= shown
@@ -127,12 +287,73 @@ def test_the_map_shows_every_room() -> None:
         assert (ROOT / "affcli" / name).exists() or (ROOT / name).exists(), name
 
 
-def test_the_data_dictionary_names_every_table_and_view(database: Path) -> None:
+def test_the_order_of_imports_is_the_one_that_is_checked() -> None:
+    configured = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    contracts = configured["tool"]["importlinter"]["contracts"]
+    layers = next(one["layers"] for one in contracts if one["type"] == "layers")
+    assert f"`{' > '.join(layers)}`" in " ".join(text_of(CODE).split())
+
+
+def test_every_kind_of_part_has_a_row_that_says_how_to_add_one() -> None:
+    kinds = [row[0] for row in table_rows(CODE) if len(row) == 5]
+    said = {registry_kind: registry_kind.removesuffix("s") for registry_kind in registry.KINDS}
+    for kind in said.values():
+        assert {"task": "set of tasks"}.get(kind, kind) in kinds
+
+
+class TestThePlannerOfTheReadme(PlannerContract):
+    """As the README says it is tested."""
+
+    @pytest.fixture
+    def planner(self, with_examples: None) -> Planner:
+        return registry.planner(registry.component("planners", "nearest"))
+
+
+def test_the_test_that_the_readme_shows_is_the_one_above() -> None:
+    shown = example("test_nearest.py")
+    assert "class TestNearest(PlannerContract):" in shown
+    compile(shown, "test_nearest.py", "exec")
+
+
+def test_a_trial_of_the_planner_is_replayed_by_it(workplace: Path) -> None:
+    ran("affcli solve --goal 2 --planner nearest", workplace)
+    planner = "SELECT DISTINCT planner FROM trial WHERE id > 36"
+    assert rows(workplace / "demo.db", planner) == [("nearest",)]
+    assert done("replay", "37", "--json", "--db", workplace / "demo.db").code == 0
+
+
+def test_the_data_dictionary_names_every_table_and_view(demo: Path) -> None:
     kinds = "SELECT name FROM sqlite_master WHERE type IN ('table', 'view')"
-    for (name,) in rows(database, kinds):
+    for (name,) in rows(demo / "demo.db", kinds):
         if name != "alembic_version":
-            assert f"`{name}`" in README
+            assert re.search(rf"^## (?:Table|View) `{name}`", text_of(DATA), re.MULTILINE), name
 
 
-def test_nothing_is_left_to_be_filled_in() -> None:
-    assert "@@" not in README
+def test_the_choices_name_every_section_of_the_settings() -> None:
+    sections = sorted({name.partition(".")[0] for name in known_settings()})
+    assert f"Sections: {', '.join(sections)};" in text_of(CHOICES)
+
+
+def test_every_target_of_make_is_told_and_there() -> None:
+    makefile = (ROOT / "Makefile").read_text()
+    targets = set(re.findall(r"^## ([a-z-]+) ", makefile, re.MULTILINE))
+    told = set(re.findall(r"\bmake ([a-z-]+)", " ".join(map(text_of, READMES))))
+    assert targets - {"help", "clean"} <= told
+    made = {match for readme in READMES for match in re.findall(r"`make ([a-z-]+)", prose(readme))}
+    assert made <= targets
+
+
+def test_installing_is_told_as_it_is() -> None:
+    configured = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    for readme in READMES:
+        for extras in re.findall(r"(?:\.|affcli|\.whl)\[([a-z,]+)\]", text_of(readme)):
+            assert set(extras.split(",")) <= set(configured["optional-dependencies"])
+    assert f"affcli-{__version__}-py3-none-any.whl" in text_of("README.md")
+    assert f"Python {configured['requires-python'].removeprefix('>=')} or newer" in text_of(
+        "README.md"
+    )
+
+
+@every_readme
+def test_nothing_is_left_to_be_filled_in(readme: str) -> None:
+    assert not re.search(r"@@|TODO|FIXME|XXX", text_of(readme))

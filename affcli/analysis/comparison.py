@@ -29,7 +29,7 @@ class Beside:
 
     Args:
         paper: the paper's count; None where the paper has none.
-        counts: ours, one a robot; none when nothing was tried.
+        counts: ours, one for each robot; none when nothing was tried.
         tried: out of how many.
     """
 
@@ -110,7 +110,7 @@ def _sum(cells: Collection[Beside]) -> Beside | None:
 def results_of_single(
     solving: Iterable[TrialInfo], breaking: Iterable[TrialInfo]
 ) -> Results | None:
-    """Return the results of robots that learned a tool each; of each start the latest trial counts.
+    """Return the results of robots that each learned a tool; of each start the latest trial counts.
 
     Args:
         solving: trials with whole tools of the learning runs in question, oldest first.

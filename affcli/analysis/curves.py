@@ -75,7 +75,7 @@ class Band:
 
     @classmethod
     def of(cls, lines: Sequence[Sequence[float]]) -> "Band":
-        """Summarise lines of one length, one a robot; NaN where a robot has none."""
+        """Summarise lines of one length, one for each robot; NaN where a robot has none."""
         mean, low, high = [], [], []
         for values in zip(*lines, strict=True):
             known = not any(map(math.isnan, values))

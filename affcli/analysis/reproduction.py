@@ -128,5 +128,5 @@ def _solved(counts: Iterable[SuccessCount], robots: int) -> Solved:
 
 
 def _by_robot(counts: Mapping[int, int], robots: int) -> list[int]:
-    """Return one count a robot."""
+    """Return one count for each robot."""
     return [counts.get(robot, 0) for robot in range(robots)]

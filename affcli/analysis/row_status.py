@@ -63,7 +63,7 @@ def compared(
     the other table does not count.
 
     Returns:
-        One status a row of `before`, and one a row of `after`.
+        A status for each row of `before`, and one for each of `after`.
     """
     live = [
         [row for row, status in zip(rows, current(rows), strict=True) if status is RowStatus.LIVE]

@@ -81,7 +81,7 @@ class Spread:
 
     @classmethod
     def of(cls, counts: Sequence[int]) -> "Spread":
-        """Summarise one count a robot; ValueError when there are none."""
+        """Summarise one count for each robot; ValueError when there are none."""
         mean, interval = fmean(counts), mean_interval(counts)
         return cls(mean, interval, quantile(counts, LOW), quantile(counts, HIGH))
 

@@ -1,1 +1,1 @@
-"""What the robot can do, one file a family; the registry finds behaviors and bindings by PARTS."""
+"""What the robot can do; the registry finds behaviors and bindings by the PARTS of each file."""

@@ -1,1 +1,1 @@
-"""The command line: one file a command; options, checks of what the user wrote, exit codes."""
+"""The command line: one file for each command; options, checks of what was given, exit codes."""

@@ -36,8 +36,8 @@ def break_tool(
 ) -> None:
     """Use a broken tool with the table of the whole one: 4 goals x 4 starts.
 
-    Every trial starts from the table as learned and keeps its counters to itself. The same trials
-    with the whole tool are done beside them, to compare.
+    Every trial starts from the table as learned and leaves the stored counters alone. The same
+    trials are done with the whole tool, to compare.
     """
     with opened(database, write=True) as store:
         (used,) = learned_runs(store, tool_or_default(tool, run), database, run)

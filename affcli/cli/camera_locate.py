@@ -31,9 +31,9 @@ def locate(
 ) -> None:
     """Say where a picture shows what is colour-coded.
 
-    Without --colors the colours of the simulated table are looked for. In such a file a section
+    Without --colors it looks for the colours of the simulated table. In a file of colours a section
     [cup] with rgb = [30, 110, 200] looks for that colour; height, 0 if not given, is how high over
-    the table the middle of what is seen lies (inches).
+    the table the middle of the thing lies (inches).
 
     The principal point is where the calibration found it. Both pictures must be taken alike: camera
     in its place, same zoom, crop and lens.

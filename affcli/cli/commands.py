@@ -45,15 +45,15 @@ CAMERA = Group(
 
 DB = Group(
     "db",
-    "Look after the database file.",
+    "Check, copy and upgrade the database file.",
     (
         Command("upgrade", "db:upgrade", "Bring the schema of an older database up to date."),
         Command("backup", "db:backup", "Write a checked copy of the database."),
-        Command("check", "db:check", "Look whether everything in the database is as it must be."),
+        Command("check", "db:check", "Check that everything in the database is as it must be."),
         Command(
             "info",
             "db:info",
-            "Say what the file is: schema revision, size, journal mode, rows of each table.",
+            "Show schema revision, size, journal mode, and how many rows each table has.",
         ),
     ),
 )
@@ -130,12 +130,12 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
         Command(
             "predict",
             "predict:predict",
-            "Ask a table what fresh pushes will do, and see how well it knew.",
+            "Predict fresh pushes with a table, and see how often it is right.",
         ),
         Command(
             "reproduce",
             "reproduce:reproduce",
-            "Let many robots learn the five tools and do the paper's 80 + 16 trials; compare.",
+            "Reproduce the paper with many robots: five tools, 80 + 16 trials each.",
             goes_on=True,
         ),
     ),
@@ -149,7 +149,7 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
         Command(
             "replay",
             "replay:replay",
-            "Do a stored trial again, step by step, and hold it against its record.",
+            "Replay a stored trial step by step, and compare it with its record.",
         ),
         FIGURE,
         TABLE,
@@ -158,7 +158,7 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
     "Data": (
         Command("sql", "sql:sql", "Ask the database one question in SQL."),
         DB,
-        Command("doctor", "doctor:doctor", "Say whether all is here that affcli needs."),
+        Command("doctor", "doctor:doctor", "Say whether everything is here that affcli needs."),
         Command("cite", "cite:cite", "Say how to cite the paper and this software, in BibTeX."),
     ),
     "Extend": (

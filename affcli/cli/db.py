@@ -16,7 +16,7 @@ from affcli.errors import DatabaseError, one_line
 def upgrade(*, database: Database = DEFAULT_DATABASE) -> None:
     """Bring the schema of an older database up to date.
 
-    All or nothing; a copy of the database as it was is made first.
+    It is upgraded whole or not at all; a copy of it as it was is made first.
     """
     store.upgrade(
         database, copied=lambda copy: say(f"a copy of it as it was: {one_line(copy, 1000)}")
@@ -34,7 +34,7 @@ def backup(
 ) -> None:
     """Write a checked copy of the database.
 
-    As it is at one moment; others may go on reading and writing it.
+    The copy is of one moment; others may go on reading and writing.
     """
     copy = database.with_name(f"{database.name}.backup") if out is None else out
     require_new(copy, force=force)
@@ -43,10 +43,10 @@ def backup(
 
 
 def check(*, database: Database = DEFAULT_DATABASE, as_json: AsJson = False) -> int:
-    """Look whether everything in the database is as it must be.
+    """Check that everything in the database is as it must be.
 
-    Pages, references, sums, and the counters against the steps that changed them. Exit code 3 when
-    something is not.
+    That is pages, references, sums, and the counters beside the steps that changed them. Exit code
+    3 when something is not.
     """
     findings = store.check(database)
     wrong = [finding for finding in findings if finding.wrong]
@@ -64,7 +64,7 @@ def check(*, database: Database = DEFAULT_DATABASE, as_json: AsJson = False) -> 
 
 
 def info(*, database: Database = DEFAULT_DATABASE, as_json: AsJson = False) -> None:
-    """Say what the file is: schema revision, size, journal mode, rows of each table."""
+    """Show schema revision, size, journal mode, and how many rows each table has."""
     found = asdict(store.database_info(database))
     facts = {**found, "path": str(database)}
     if as_json:

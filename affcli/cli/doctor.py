@@ -1,4 +1,4 @@
-"""``affcli doctor``: is all here that affcli needs, and what to do where it is not."""
+"""``affcli doctor``: is everything here that affcli needs, and what to do where it is not."""
 
 from dataclasses import asdict
 
@@ -9,10 +9,10 @@ from affcli.lab.doctor import facts
 
 
 def doctor(*, database: Database = DEFAULT_DATABASE, as_json: AsJson = False) -> int:
-    """Say whether all is here that affcli needs.
+    """Say whether everything is here that affcli needs.
 
     Python, packages, SQLite, file system, disk space, permissions and the database; each with what
-    to do. Exit code 3 when something must be mended first.
+    to do. Exit code 3 when something must be repaired first.
     """
     found = facts(database)
     if as_json:

@@ -82,8 +82,8 @@ def affordances(
 ) -> None:
     """Draw what a tool affords, as arrows over its outline.
 
-    As in Fig. 6, an arrow a row: where the attractor was from the wrist, and how it moved. Of the
-    latest finished run of the T-hook if nothing else is said.
+    As in Fig. 6, an arrow for each row: where the attractor was from the wrist, and how it moved.
+    Of the latest finished run of the T-hook if nothing else is said.
 
     With --compare a row is kept when the other run has one of the same behavior and distance that
     starts within 1.5 in of it and moves within 40 degrees of it; else it is lost, or won: some 8 %
@@ -188,12 +188,17 @@ def learning(
     run: Annotated[
         list[int] | None,
         typer.Option(
-            "--run", help="Learning runs, instead of all.", metavar="ID", callback=_checked_ids
+            "--run",
+            help="Only this learning run; several times for several.",
+            metavar="ID",
+            callback=_checked_ids,
         ),
     ] = None,
     tool: Annotated[
         list[str] | None,
-        typer.Option("--tool", help="Only those of these.", metavar="NAME", callback=checked_tools),
+        typer.Option(
+            "--tool", help="Only runs of this tool.", metavar="NAME", callback=checked_tools
+        ),
     ] = None,
     session: Annotated[
         int | None,
@@ -211,7 +216,8 @@ def learning(
 
     Rows made, and the share of behaviors that had an effect so far.
 
-    A line a learning run; with --session the mean of many robots and the central 95 % of them.
+    One line for each learning run; with --session the mean of many robots and the central 95 % of
+    them.
     """
     if run and (tool or session is not None):
         raise UsageError("give --run alone, without --tool and --session")

@@ -31,7 +31,7 @@ def prediction(
 ) -> None:
     """Draw how well a table predicts fresh pushes.
 
-    Against how many rows it was learned from.
+    Against the number of rows that it has.
 
     The numbers are those of `affcli predict` with as many pushes.
     """

@@ -78,9 +78,10 @@ def results(
 ) -> None:
     """Draw our intervals with the paper's counts.
 
-    Of the 20 cells, of all trials, and of the broken tool.
+    For the 20 cells, for all trials, and for the broken tool.
 
-    Of a finished reproduction; where there is none, what affcli solve gave, one robot a tool.
+    They are those of a finished reproduction; where there is none, those of affcli solve, with one
+    robot for each tool.
     """
     check_out(out, force=force)
     with opened(database) as store:
@@ -106,8 +107,8 @@ def adaptation(
 ) -> None:
     """Draw how robots adapt to a broken tool, step by step.
 
-    The share of tries on lost affordances, and the mean replication probability of the rows on the
-    missing side; of a session of affcli break-tool, or of a reproduction.
+    It shows the share of tries on lost affordances, and the mean replication probability of the
+    rows on the missing side, in a session of affcli break-tool or a reproduction.
     """
     check_out(out, force=force)
     with opened(database) as store:

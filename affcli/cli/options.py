@@ -31,7 +31,7 @@ FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 
 
 def checked_sensor(kind: str) -> SensorKind:
-    """Return the kind of sensor asked for; UsageError when there is none such."""
+    """Return the kind of sensor asked for; UsageError when there is no such kind."""
     return one_of("sensor", kind, SENSOR_KINDS)
 
 
@@ -168,7 +168,9 @@ Explorer = Annotated[
         autocompletion=names_of("explorers"),
     ),
 ]
-World = Annotated[str | None, typer.Option("--world", help="Where (default: table).", metavar=PART)]
+World = Annotated[
+    str | None, typer.Option("--world", help="Where it takes place (default: table).", metavar=PART)
+]
 Planner = Annotated[
     Component,
     typer.Option(
@@ -234,7 +236,7 @@ HeldShape = Annotated[
     str | None,
     typer.Option(
         "--shape",
-        help="What the robot truly holds, painted alike.",
+        help="What the robot truly holds, in the same colour.",
         metavar="NAME",
     ),
 ]

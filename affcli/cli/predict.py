@@ -29,10 +29,10 @@ def predict(
     database: Database = DEFAULT_DATABASE,
     as_json: AsJson = False,
 ) -> None:
-    """Ask a table what fresh pushes will do, and see how well it knew.
+    """Predict fresh pushes with a table, and see how often it is right.
 
-    The nearest row of the same behavior tells: all of them, and only the first that were learned.
-    Nothing is written.
+    A push is predicted by the nearest row of the same behavior: of all rows, and of only the first
+    that were learned. Nothing is written.
     """
     with opened(database) as store:
         (used,) = learned_runs(store, tool_or_default(tool, run), database, run)

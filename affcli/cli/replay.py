@@ -61,11 +61,11 @@ Trial = Annotated[
         help="A trial's id in the database.", metavar="TRIAL", callback=check_count("TRIAL")
     ),
 ]
-All = Annotated[bool, typer.Option("--all", help="Every trial: only whether it is the same.")]
+All = Annotated[bool, typer.Option("--all", help="Every trial: say only whether it is the same.")]
 Steps = Annotated[str | None, typer.Option("--steps", help="One or some: 3 or 3-5.", metavar="N")]
 Speed = Annotated[
     float | None,
-    typer.Option("--speed", help="Play: 1 as the robot, 10 faster.", metavar="X"),
+    typer.Option("--speed", help="Play: 1 as fast as the robot, 10 ten times.", metavar="X"),
 ]
 Gif = Annotated[Path | None, typer.Option("--gif", help="Write a film, *.gif.", metavar="FILE")]
 
@@ -82,10 +82,10 @@ def replay(
     database: Database = DEFAULT_DATABASE,
     as_json: AsJson = False,
 ) -> int:
-    """Do a stored trial again, step by step, and hold it against its record.
+    """Replay a stored trial step by step, and compare it with its record.
 
-    From its settings, its seed and the counters of its time. Exit code 1 when anything, to the last
-    bit, is not as the record says.
+    It is computed again from its settings, its seed and the counters that it began with. Exit code
+    1 when anything, to the last bit, is not as the record says.
 
     On a terminal each step waits for Enter; --speed plays without waiting.
     """

@@ -57,7 +57,7 @@ def reproduce(
         int | None,
         typer.Option(
             "--workers",
-            help="Processes; one a core if not given.",
+            help="Processes; one for each core if not given.",
             metavar="N",
             callback=check_count("--workers", MOST_WORKERS),
         ),
@@ -67,7 +67,7 @@ def reproduce(
     changes: Changes = None,
     as_json: AsJson = False,
 ) -> None:
-    """Let many robots learn the five tools and do the paper's 80 + 16 trials; compare.
+    """Reproduce the paper with many robots: five tools, 80 + 16 trials each.
 
     The result is the same for any number of workers. An interrupted reproduction goes on when the
     same command is given again, as does the latest one with --resume alone.

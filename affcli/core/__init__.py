@@ -1,1 +1,1 @@
-"""The glossary: one file a term of the paper. No I/O, no engine, no terminal."""
+"""The glossary: one file for each term of the paper. No I/O, no engine, no terminal."""

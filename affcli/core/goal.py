@@ -1,4 +1,4 @@
-"""The port of a goal: where the attractor shall be, as the robot sees it (§7.1)."""
+"""The port of a goal: where the attractor is to be brought, as the robot sees it (§7.1)."""
 
 from typing import Protocol
 
@@ -21,7 +21,7 @@ class Goal(Protocol):
         """The place that distances are taken to (in, table frame)."""
 
     def reached(self, seen: Observation) -> bool:
-        """Tell whether the attractor is seen where it shall be."""
+        """Tell whether the attractor is seen where it is to be."""
 
     def squared_distance(
         self, at: Point, dx: NDArray[np.float64], dy: NDArray[np.float64]

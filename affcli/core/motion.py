@@ -57,7 +57,7 @@ def motion_json(motion: Motion) -> list[list[Any]]:
 
 
 def motion_from_json(value: Any) -> Motion:
-    """Return the motion that `motion_json` wrote; ValueError when it wrote none such."""
+    """Return the motion that `motion_json` wrote; ValueError for anything else."""
     made: list[Segment] = []
     for kind, *numbers in value:
         given = [float(number) for number in numbers]

@@ -59,7 +59,7 @@ class Robot(Protocol):
 
 
 class Sensor(Protocol):
-    """Where observation vectors come from. Looking changes nothing but the noise that follows."""
+    """Where observation vectors come from. Looking changes only the noise of what is seen next."""
 
     def observe(self) -> Observation:
         """Return the observation vector of this moment."""
@@ -145,4 +145,4 @@ class Explorer(Protocol):
         """Return, as JSON types, all that it remembers but for its random stream."""
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        """Remember what `state` gave. ValueError, KeyError or TypeError when it gave none such."""
+        """Remember what `state` gave. ValueError, KeyError or TypeError for anything else."""

@@ -124,7 +124,7 @@ def tool_from_canonical(value: Any) -> Tool:
     """Return the tool that `Tool.canonical` wrote.
 
     Raises:
-        ValueError, KeyError, TypeError: it wrote none such.
+        ValueError, KeyError, TypeError: it is anything else.
     """
     red, green, blue = map(float, value["color"])
     parts = tuple(

@@ -48,7 +48,7 @@ class Evidence:
     """Wald's sequential probability ratio test (1945) on tries that failed.
 
     Only tries of live rows count: of a row that was excluded before nothing is expected. So a table
-    that has adapted to a changed tool holds for it, and a row counts no more once it has died.
+    that has adapted to a changed tool holds for it, and an excluded row no longer counts.
 
     Args:
         tries: of rows that were live.

@@ -115,7 +115,7 @@ class World(Protocol):
         """Return the packages whose versions decide its numbers, seen through a sensor."""
 
     def tasks(self, task_set: str) -> tuple[Task, ...]:
-        """Return the tasks of a set by its name; KeyError when it has none such."""
+        """Return the tasks of a set by its name; KeyError when it has no such set."""
 
     def learning(self, spec: LearningSpec, *, laid_out: bool = True) -> Setting:
         """Lay out a learning run (§6); without `laid_out` a snapshot is restored next."""

@@ -1,1 +1,1 @@
-"""What to try next while learning, one file a way; the registry finds explorers by PARTS."""
+"""What to try next while learning; the registry finds explorers by the PARTS of each file."""

@@ -1,4 +1,4 @@
-"""Is all here that affcli needs? Python, packages, and where the database lies."""
+"""Is everything here that affcli needs? Python, packages, and where the database lies."""
 
 import platform
 from importlib.metadata import PackageNotFoundError, version

@@ -36,7 +36,7 @@ class Reproduced:
         parts: what its learning runs carry.
         planner: how it chooses rows.
         seed: shared by all robots.
-        hours: robot hours a tool.
+        hours: robot hours with each tool.
     """
 
     parts: RunParts

@@ -46,7 +46,7 @@ def in_order(
         warn: is told, in one line, that the processes cannot be started and this one does it all.
 
     Raises:
-        AffcliError: a worker died at its work.
+        AffcliError: a worker process died.
         Exception: what `work` raised.
     """
     wanted = min(workers, len(tasks))
@@ -143,7 +143,7 @@ def _let(transfer: Callable[..., Any], *values: object) -> Any:
         return transfer(*values)
     except GONE as error:
         raise AffcliError(
-            "a worker process died, for want of memory perhaps; the robots before are saved: run "
+            "a worker process died, perhaps memory ran out; the robots before are saved: run "
             "the command again, with fewer --workers, or with --workers 1"
         ) from error
 

@@ -27,7 +27,7 @@ class TablePredictor:
 
     Args:
         rows: what was learned.
-        radius: beyond it a row tells nothing (in).
+        radius: a row that starts farther away predicts nothing (in).
     """
 
     def __init__(self, rows: Iterable[Affordance], radius: float = RADIUS) -> None:

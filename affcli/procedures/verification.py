@@ -34,7 +34,7 @@ def verify(
     Each time: the experimenter puts the attractor where the row's start can be set up; observe;
     position the wrist as in the row's O^s; observe; run the row's behavior; observe; count the use
     of the row and whether it replicated. All rows come once, in random order, excluded ones too:
-    only so can a row come back that a mended tool affords again. Then all come once more.
+    only so can a row come back that a repaired tool affords again. Then all are tried once more.
 
     Args:
         robot, sensor, experimenter: the world as the robot meets it.
@@ -58,7 +58,7 @@ def _situation_for(
 ) -> Observation:
     """Have the attractor put where the row can be tried; return what is seen then.
 
-    The robot aims by what it sees, which may lie out of its reach by a hair where the attractor
+    The robot aims by what it sees, which may lie just out of its reach where the attractor
     does not: then the experimenter is asked for another place.
     """
     offset = row.start.wrist_to_object

@@ -90,7 +90,7 @@ def _figures(tally: Tally) -> tuple[str, ...]:
 
 
 def _excluded_table(dead: Sequence[DeadRow], trials: int) -> Sheet:
-    """Return the rows that died, by behavior and side; one by one they stand in the JSON."""
+    """Return how many rows were excluded, by behavior and side; the JSON lists each."""
     missing = sum(row.on_missing_side for row in dead)
     table = Sheet(
         ("behavior", "side", "rows", "truly lost", "times"),

@@ -12,7 +12,7 @@ MOST_EXACT = 2**53 - 1
 
 
 def json_lines(columns: Sequence[str], rows: Iterable[Sequence[Value]]) -> Iterator[str]:
-    """Yield a table as JSON line by line: one object a row.
+    """Yield a table as JSON line by line: one object for each row.
 
     Args:
         columns: the keys; no two alike.

@@ -25,7 +25,7 @@ def prediction_tables(
 
     Args:
         title: whose table.
-        radius: how near a row must be to tell something (in).
+        radius: how near a row must start to predict a movement (in).
         pushes: what was predicted, and what was seen.
     """
     growing = scores(pushes)

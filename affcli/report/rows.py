@@ -25,7 +25,7 @@ Use = tuple[StoredStep, TrialSpec]
 
 
 def rows_table(rows: Sequence[tuple[StoredRow, str]], title: str, *, with_runs: bool) -> Sheet:
-    """Return rows, one a line.
+    """Return rows, each on a line.
 
     Args:
         rows: each with its region: the part of the tool nearest to the attractor when it was made.
@@ -132,7 +132,7 @@ def _facts(stored: StoredRow, region: str, run: LearningRunInfo) -> Sheet:
 
 
 def _observations(row: Affordance) -> Sheet:
-    """Return O^s and O^e, one component a line."""
+    """Return O^s and O^e, each component on a line."""
     sheet = Sheet(
         ("component", "what", "O^s", "O^e"),
         title="Observation vectors before and after",

@@ -42,7 +42,7 @@ class Sheet:
     rows: list[tuple[str | Text, ...]] = field(default_factory=list)
 
     def add(self, *cells: str | Text) -> None:
-        """Add a row: one cell a column."""
+        """Add a row: one cell for each column."""
         self.rows.append(tuple(c if isinstance(c, Text) else one_line(c, LONGEST) for c in cells))
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:

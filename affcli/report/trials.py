@@ -149,7 +149,7 @@ def solve_table(
     ends: Sequence[tuple[TrialSpec, TrialEnd]],
     runs: Mapping[str, LearningRunInfo],
 ) -> Sheet:
-    """Return the trials of one goal: a row a tool, a column a start.
+    """Return the trials of one goal: a row for each tool, a column for each start.
 
     Args:
         ends: the trials.

@@ -20,7 +20,7 @@ SETTLE = 8
 """A contact must last this many short steps before long ones: the impulse of the impact, from which
 the engine starts the next step, has to fade."""
 DEEP = 0.005
-"""With more overlap than this (in) steps stay short, so that it is mended before it can grow."""
+"""With more overlap than this (in) steps stay short, so that it is corrected before it can grow."""
 MARGIN = 1.5
 """Puck and tool approach each other at most this much faster than the tool moves."""
 

@@ -37,7 +37,7 @@ def surface_friction(
         joint = pymunk.PivotJoint(table, puck, (0.0, 0.0), point)
         joint.max_force = share
         joint.max_bias = 0.0
-        # Of a deviation that is not mended all is left: said so, the engine need not work it out.
+        # Nothing of a deviation is corrected: told so, the engine need not compute how much.
         joint.error_bias = 1.0
         joints.append(joint)
     return joints

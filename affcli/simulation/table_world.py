@@ -151,7 +151,7 @@ class TableWorld:
         return ("numpy", "pymunk", *seeing)
 
     def tasks(self, task_set: str) -> tuple[Task, ...]:
-        """Return the tasks of a set by its name; KeyError when there is none such."""
+        """Return the tasks of a set by its name; KeyError when there is no such set."""
         if task_set != extension_of_reach.NAME:
             raise KeyError(task_set)
         return extension_of_reach.extension_of_reach(self._settings.workspace.layout)

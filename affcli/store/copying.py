@@ -38,7 +38,7 @@ def copy_of(driver: sqlite3.Connection, path: Path, copy: Path, timeout: float) 
     if copy.exists() and path.samefile(copy):
         raise DatabaseError(f"{one_line(copy)}: that is the database itself; name another file")
     try:
-        # Who may not read the database shall not read its copy.
+        # Who may not read the database must not read its copy.
         with replacing(copy, path.stat().st_mode & 0o777) as part:
             _fill(part, driver, path, copy, timeout)
         _synced(Path(os.path.realpath(copy)).parent)

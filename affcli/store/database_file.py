@@ -33,7 +33,7 @@ def require_place(path: Path, *, create: bool, write: bool) -> None:
     """Refuse a path at which there can be no database, before SQLite touches it.
 
     Args:
-        path: where the database is or shall be.
+        path: where the database is or will be.
         create: it may be missing.
         write: it will be written.
 

@@ -12,7 +12,7 @@ from affcli.store.health import database_info
 from affcli.store.journal import journal_mode_for
 
 State = Literal["ok", "look", "bad"]
-"""All is well; something to know; nothing will work until it is mended."""
+"""All is well; something to know; nothing will work until it is repaired."""
 
 NETWORKED = frozenset(
     {"nfs", "nfs4", "cifs", "smb3", "smbfs", "afs", "9p", "fuse.sshfs", "ncpfs", "lustre", "gpfs"}
@@ -41,7 +41,7 @@ class Fact:
 
 
 def environment_facts(path: Path) -> tuple[Fact, ...]:
-    """Look at where a database is or shall be, without changing anything.
+    """Look at where a database is or will be, without changing anything.
 
     Args:
         path: the database; it may not be there yet.

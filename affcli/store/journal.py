@@ -15,7 +15,7 @@ WAL_MENDED: tuple[tuple[Version, Version], ...] = (
 
 
 def journal_mode_for(version: tuple[int, ...]) -> Literal["wal", "delete"]:
-    """Return the journal mode to use with a version of SQLite: WAL where it is mended."""
+    """Return the journal mode to use with a version of SQLite: WAL where its fault is repaired."""
     return "wal" if any(low <= version < high for low, high in WAL_MENDED) else "delete"
 
 

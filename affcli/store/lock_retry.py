@@ -15,7 +15,7 @@ LONGEST_WAIT = 90.0
 
 ATTEMPT = 0.25
 """Seconds SQLite itself waits for a lock before Python asks again. SQLite hears no signal while it
-waits: with the whole wait in one attempt, ctrl-C would be heard half a minute late."""
+waits: with the whole wait in one attempt, ctrl-C would take effect half a minute late."""
 
 
 SILENT = 5.0
@@ -25,7 +25,7 @@ _listeners: list[Callable[[str], object]] = []
 
 
 def tell_of_waiting(say: Callable[[str], object]) -> None:
-    """Have `say` told, once in each wait of more than `SILENT` seconds, for whom it is waited."""
+    """Call `say` once in each wait of more than `SILENT` seconds; it is told who is waited for."""
     _listeners.append(say)
 
 

@@ -191,7 +191,7 @@ def _copy_before(revision: str, path: Path) -> Path:
 
 @contextmanager
 def _failure_named(path: Path, revision: str, copy: Path) -> Iterator[None]:
-    """Say in one line that a migration stumbled over what stands in the database."""
+    """Say in one line that a migration failed on what is in the database."""
     try:
         yield
     except sa.exc.DBAPIError as error:

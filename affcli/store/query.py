@@ -107,7 +107,7 @@ def run_sql(
 
 
 def _confine(driver: sqlite3.Connection) -> None:
-    """Leave the connection nothing but reading values of a bearable size."""
+    """Let the connection do nothing but read values of a limited size."""
     driver.execute("PRAGMA query_only = ON")
     driver.execute("PRAGMA trusted_schema = OFF")
     for limit, value in LIMITS.items():
@@ -150,7 +150,7 @@ def _run(driver: sqlite3.Connection, text: str, max_seconds: float, max_rows: in
 
 
 def _explain(error: Exception, max_seconds: float) -> NoReturn:
-    """Raise what a person can mend as a BadInputError; the database's own faults as they are."""
+    """Raise what a person can put right as BadInputError; the database's faults as they are."""
     code = result_code(error) & PRIMARY
     if not code:  # from Python's driver: two statements, a NUL, half a character
         raise BadInputError(f"sql: {one_line(error)}; give one SELECT") from error

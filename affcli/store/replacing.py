@@ -21,7 +21,7 @@ def replacing(path: Path, mode: int | None = None) -> Iterator[Path]:
     place, an hour ago or more, is removed.
 
     Args:
-        path: where the file shall be; what is there is kept until then.
+        path: where the file will be; what is there is kept until then.
         mode: who may read and write it; None for whoever may now, or else as the umask says.
 
     Raises:

@@ -127,7 +127,7 @@ def test_what_is_seen_decides_and_is_counted() -> None:
 
 
 def test_excluded_rows_are_tried_too_and_may_come_back() -> None:
-    """1/2 is excluded; 2/3 no longer is: only so is a mended tool noticed."""
+    """1/2 is excluded; 2/3 no longer is: only so is a repaired tool noticed."""
     test = Test(tries=4)
     dead = next(record for record in test.records if record.row.step == 6)
     assert not dead.live

@@ -63,7 +63,7 @@ def affordances_figure(
 
 
 def _groups(calls: Sequence[BehaviorCall]) -> list[list[BehaviorCall]]:
-    """Return the calls without repeats, one list a behavior."""
+    """Return the calls without repeats, one list for each behavior."""
     groups: dict[str, list[BehaviorCall]] = {}
     for call in dict.fromkeys(calls):
         groups.setdefault(call.name, []).append(call)
@@ -75,7 +75,7 @@ def _arranged(
 ) -> tuple[list[BehaviorCall], int]:
     """Return the calls in the order of their panels, row by row, and how many stand in a row.
 
-    A column a behavior where so many fit, or where that leaves few rows; else a row a behavior.
+    Each behavior has a column where so many fit, or where that leaves few rows; else a row.
     """
     longest = max(map(len, groups))
     if longest <= most < len(groups) and most < MOST_BESIDE:
@@ -125,7 +125,7 @@ def _arrow(row: Affordance) -> Arrow:
 
 
 def _counts(statuses: Sequence[RowStatus]) -> str:
-    """Return how many rows a panel has, one line a status where there are several."""
+    """Return how many rows a panel has, one line for each status where there are several."""
     counts = {status: statuses.count(status) for status in RowStatus if status in statuses}
     if set(counts) <= {RowStatus.LIVE}:
         rows = len(statuses)

@@ -70,7 +70,7 @@ def curves_figure(curves: Sequence[Curve]) -> Figure:
 
 
 def bands_figure(tools: Sequence[ToolCurves]) -> Figure:
-    """Return many robots' learning: a column a tool, mean and central 95 % of the robots."""
+    """Return many robots' learning: a column for each tool, mean and central 95 % of the robots."""
     columns = columns_for(len(tools), MOST_BESIDE)
     rows = 2 * math.ceil(len(tools) / columns)
     robots = max(tool.robots for tool in tools)

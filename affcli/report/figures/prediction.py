@@ -33,7 +33,7 @@ def prediction_figure(title: str, pushes: Sequence[Push]) -> Figure:
 
     Args:
         title: whose table.
-        pushes: what was foretold, and what was seen.
+        pushes: what was predicted, and what was seen.
     """
     growing = scores(pushes)
     with canvas(TWO_COLUMNS, HEIGHT) as figure:

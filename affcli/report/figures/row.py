@@ -84,7 +84,7 @@ def _draw_tool(axes: Axes, view: RowView, wrist: Pose) -> None:
 
 
 def _draw_end(axes: Axes, view: RowView) -> None:
-    """Draw where tool and attractor came to, whence they came, and the detected movement."""
+    """Draw where tool and attractor came from and went to, and the detected movement."""
     row = view.row
     wrist, moved = _wrist(row.start), _wrist(row.end)
     began, x, y = row.start.wrist_to_object, *row.end.object_position

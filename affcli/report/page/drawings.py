@@ -1,4 +1,4 @@
-"""Arrows over tools as the page draws them: one panel a behavior, as in Fig. 6."""
+"""Arrows over tools as the page draws them: one panel for each behavior, as in Fig. 6."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,1 +1,1 @@
-"""The tools that the simulated table has, one file a family; the registry finds them by PARTS."""
+"""The tools that the simulated table has; the registry finds them by the PARTS of each file."""
