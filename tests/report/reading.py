@@ -55,6 +55,12 @@ def outlines(axes: "Axes", *, dashed: bool) -> int:
     return sum((polygon.get_linestyle() not in {"-", "solid"}) == dashed for polygon in polygons)
 
 
+def right_edge(axes: "Axes") -> float:
+    """Return how far right the parts of tools reach that a panel has (in)."""
+    polygons = [patch for patch in axes.patches if isinstance(patch, Polygon)]
+    return max(float(x) for polygon in polygons for x, _ in np.asarray(polygon.get_xy()))
+
+
 def circles(axes: "Axes") -> list[Circle]:
     return [patch for patch in axes.patches if isinstance(patch, Circle)]
 

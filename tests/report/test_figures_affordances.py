@@ -23,6 +23,7 @@ from tests.report.reading import (
     corners,
     kinds_in,
     outlines,
+    right_edge,
     texts,
 )
 
@@ -169,3 +170,20 @@ def test_no_head_is_longer_than_its_arrow(arrows: list[Arrow], head: float) -> N
     for (start, end), (tip, left, right) in zip(arrows, corners(heads), strict=True):
         neck = (0.5 * (left[0] + right[0]), 0.5 * (left[1] + right[1]))
         assert math.dist(tip, neck) <= min(head, 0.56 * math.dist(start, end)) + 1e-9
+
+
+def test_rows_of_a_turned_wrist_have_a_panel_where_the_tool_is_turned() -> None:
+    straight, other = affordance(1, call=CALLS[0]), affordance(2, call=CALLS[0])
+    turned = replace(other, wrist_angle=-math.pi / 2)
+    rows = [(row, RowStatus.LIVE) for row in (straight, turned)]
+    panels = affordances_figure([], [drawn.view(rows)], KEY).axes
+    assert [axes.get_title() for axes in panels] == [
+        "Extend arm, 2 in, wrist at -90 deg",
+        "Extend arm, 2 in",
+    ]
+    assert [len(arrows_in(axes)) for axes in panels] == [1, 1]
+    parts = drawn.T_HOOK.parts
+    ahead = max(y for part in parts for _, y in part.outline.vertices)
+    beside = max(x for part in parts for x, _ in part.outline.vertices)
+    # A quarter to the right: what was ahead of the wrist is beside it.
+    assert [right_edge(axes) for axes in panels] == [pytest.approx(ahead), pytest.approx(beside)]

@@ -45,6 +45,7 @@ from tests.report.reading import (
     circles,
     laid_out,
     outlines,
+    right_edge,
     texts,
     written,
 )
@@ -110,6 +111,13 @@ def test_a_row_is_drawn_where_it_was_seen() -> None:
     assert end == pytest.approx(ended)
     assert (outlines(before, dashed=True), outlines(after, dashed=True)) == (0, 5)
     assert (before.get_xlim(), before.get_ylim()) == (after.get_xlim(), after.get_ylim())
+
+
+def test_a_row_of_a_turned_wrist_is_drawn_with_the_tool_turned() -> None:
+    row = replace(drawn.table()[3], wrist_angle=-math.pi / 2)
+    before, _ = (axes for axes in row_figure(RowView(row, T_HOOK, 1.5)).axes if circles(axes))
+    ahead = max(y for part in T_HOOK.parts for _, y in part.outline.vertices)
+    assert right_edge(before) == pytest.approx(ahead)
 
 
 def test_the_workspace_shows_goals_starts_tool_and_reach() -> None:

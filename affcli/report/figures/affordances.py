@@ -1,7 +1,9 @@
 """What a tool affords, as arrows over its outline: a panel a behavior and distance (Fig. 6)."""
 
+import math
 from collections.abc import Mapping, Sequence
 from itertools import zip_longest
+from typing import NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
@@ -9,7 +11,7 @@ from matplotlib.figure import Figure, FigureBase
 from affcli.analysis.row_status import RowStatus
 from affcli.core.affordance import Affordance
 from affcli.core.behavior import BehaviorCall
-from affcli.core.geometry import Point
+from affcli.core.geometry import Point, Pose
 from affcli.report.figures.arrows import LOOKS, Arrow, draw_arrows
 from affcli.report.figures.canvas import FAINT, ONE_COLUMN, TWO_COLUMNS, canvas
 from affcli.report.figures.key import draw_key
@@ -28,6 +30,13 @@ MOST_BESIDE = 5
 """Panels in a row of a page."""
 
 
+class _Panel(NamedTuple):
+    """What the rows of one panel share: their behavior, and the wrist's angle before it (deg)."""
+
+    call: BehaviorCall
+    turn: int
+
+
 def affordances_figure(
     calls: Sequence[BehaviorCall], views: Sequence[TableView], key: Mapping[RowStatus, str]
 ) -> Figure:
@@ -42,7 +51,7 @@ def affordances_figure(
         views: the tables.
         key: what each status is called below the panels, where more than one occurs.
     """
-    groups = _groups([*calls, *(row.exploratory for view in views for row, _ in view.rows)])
+    groups = _groups(calls, [_panel_of(row) for view in views for row, _ in view.rows])
     shown, columns = _arranged(groups, MOST_BESIDE // len(views) or 1)
     kinds = [status for status in key if any(view.count(status) for view in views)]
     with canvas(TWO_COLUMNS if columns * len(views) > 2 else ONE_COLUMN) as figure:
@@ -62,36 +71,45 @@ def affordances_figure(
     return figure
 
 
-def _groups(calls: Sequence[BehaviorCall]) -> list[list[BehaviorCall]]:
-    """Return the calls without repeats, one list for each behavior."""
-    groups: dict[str, list[BehaviorCall]] = {}
-    for call in dict.fromkeys(calls):
-        groups.setdefault(call.name, []).append(call)
+def _panel_of(row: Affordance) -> _Panel:
+    """Return the panel that a row is drawn in."""
+    return _Panel(row.exploratory, round(math.degrees(row.wrist_angle)))
+
+
+def _groups(calls: Sequence[BehaviorCall], of_rows: Sequence[_Panel]) -> list[list[_Panel]]:
+    """Return the panels without repeats, one list for each behavior.
+
+    A call without rows has a panel too, with the tool as it is grasped.
+    """
+    turns: dict[BehaviorCall, set[int]] = {call: set() for call in calls}
+    for call, turn in of_rows:
+        turns.setdefault(call, set()).add(turn)
+    groups: dict[str, list[_Panel]] = {}
+    for call, its in turns.items():
+        groups.setdefault(call.name, []).extend(_Panel(call, turn) for turn in sorted(its or {0}))
     return list(groups.values())
 
 
-def _arranged(
-    groups: Sequence[Sequence[BehaviorCall]], most: int
-) -> tuple[list[BehaviorCall], int]:
-    """Return the calls in the order of their panels, row by row, and how many stand in a row.
+def _arranged(groups: Sequence[Sequence[_Panel]], most: int) -> tuple[list[_Panel], int]:
+    """Return the panels in their order, row by row, and how many stand in a row.
 
     Each behavior has a column where so many fit, or where that leaves few rows; else a row.
     """
     longest = max(map(len, groups))
     if longest <= most < len(groups) and most < MOST_BESIDE:
-        return [call for group in groups for call in group], longest
-    by_parameter = [call for calls in zip_longest(*groups) for call in calls if call]
+        return [panel for group in groups for panel in group], longest
+    by_parameter = [panel for panels in zip_longest(*groups) for panel in panels if panel]
     return by_parameter, columns_for(len(groups), most)
 
 
 def _draw_table(
-    page: FigureBase, view: TableView, calls: Sequence[BehaviorCall], columns: int
+    page: FigureBase, view: TableView, shown: Sequence[_Panel], columns: int
 ) -> list[Axes]:
-    """Draw one table, a panel for each call; return the panels."""
+    """Draw one table in so many columns of panels; return the panels."""
     labels = "x from the wrist (in)", "y from the wrist (in)"
-    panels = map_panels(page, len(calls), columns, labels)
-    for axes, call in zip(panels, calls, strict=True):
-        _draw_panel(axes, view, call)
+    panels = map_panels(page, len(shown), columns, labels)
+    for axes, panel in zip(panels, shown, strict=True):
+        _draw_panel(axes, view, panel)
     if view.heading:
         page.suptitle(view.heading, fontsize=9.0)
     # The attractor beside the grasp point, to scale: an arrow begins at its middle.
@@ -104,13 +122,15 @@ def _draw_table(
     return panels
 
 
-def _draw_panel(axes: Axes, view: TableView, call: BehaviorCall) -> None:
-    """Draw the rows of one call over the tool."""
-    axes.set_title(call_words(call))
-    draw_parts(axes, view.parts)
-    draw_parts(axes, view.missing, missing=True)
+def _draw_panel(axes: Axes, view: TableView, panel: _Panel) -> None:
+    """Draw the rows of one panel over the tool, which turns with the wrist."""
+    turned = f", wrist at {panel.turn} deg" if panel.turn else ""
+    axes.set_title(call_words(panel.call) + turned)
+    wrist = Pose(0.0, 0.0, math.radians(panel.turn))
+    draw_parts(axes, view.parts, wrist)
+    draw_parts(axes, view.missing, wrist, missing=True)
     draw_grasp(axes)
-    its_rows = [(row, status) for row, status in view.rows if row.exploratory == call]
+    its_rows = [(row, status) for row, status in view.rows if _panel_of(row) == panel]
     for status in RowStatus:
         arrows = [_arrow(row) for row, its in its_rows if its is status]
         draw_arrows(axes, arrows, LOOKS[status], HEAD)

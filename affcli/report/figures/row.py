@@ -42,7 +42,8 @@ def row_figure(view: RowView) -> Figure:
     """Return one row: grasp, behavior, what was seen before and after, probability.
 
     Tool and attractor are drawn where the observations put them, from where the wrist was at the
-    start; the wrist is at the attractor less its place from the wrist. All drawings have one scale.
+    start; the wrist is at the attractor less its place from the wrist, and turned as it was when
+    the exploratory behavior began. All drawings have one scale.
     """
     row = view.row
     with canvas(TWO_COLUMNS) as figure:
@@ -59,7 +60,7 @@ def row_figure(view: RowView) -> Figure:
         _write(behavior, behavior_words(row.exploratory), parameter_words(row.exploratory))
         if row.truncated:
             _write_below(behavior, "cut short: it met the", "edge of the reach")
-        _draw_tool(before, view, Pose(0.0, 0.0))
+        _draw_tool(before, view, Pose(0.0, 0.0, row.wrist_angle))
         draw_puck(before, row.start.wrist_to_object, view.puck_radius)
         _write_below(before, *_places(row.start))
         _draw_end(after, view)
@@ -71,10 +72,10 @@ def row_figure(view: RowView) -> Figure:
     return figure
 
 
-def _wrist(seen: Observation) -> Pose:
+def _wrist(seen: Observation) -> Point:
     """Return where the wrist was by an observation (in, table frame)."""
     x, y = seen.object_position
-    return Pose(x - seen.wrist_to_object_x, y - seen.wrist_to_object_y, 0.0)
+    return Point(x - seen.wrist_to_object_x, y - seen.wrist_to_object_y)
 
 
 def _draw_tool(axes: Axes, view: RowView, wrist: Pose) -> None:
@@ -89,9 +90,9 @@ def _draw_end(axes: Axes, view: RowView) -> None:
     wrist, moved = _wrist(row.start), _wrist(row.end)
     began, x, y = row.start.wrist_to_object, *row.end.object_position
     ended = Point(x - wrist.x, y - wrist.y)
-    draw_parts(axes, view.tool.parts, missing=True)
+    draw_parts(axes, view.tool.parts, Pose(0.0, 0.0, row.wrist_angle), missing=True)
     draw_puck(axes, began, view.puck_radius, before=True)
-    _draw_tool(axes, view, Pose(moved.x - wrist.x, moved.y - wrist.y))
+    _draw_tool(axes, view, Pose(moved.x - wrist.x, moved.y - wrist.y, row.wrist_angle))
     draw_puck(axes, ended, view.puck_radius)
     draw_arrows(axes, [(began, ended)], MOVED, head=1.2)
     length = row.expected_movement.distance
