@@ -178,7 +178,7 @@ def test_rows_of_a_turned_wrist_have_a_panel_where_the_tool_is_turned() -> None:
     rows = [(row, RowStatus.LIVE) for row in (straight, turned)]
     panels = affordances_figure([], [drawn.view(rows)], KEY).axes
     assert [axes.get_title() for axes in panels] == [
-        "Extend arm, 2 in, wrist at -90 deg",
+        "Extend arm, 2 in\nwrist at -90 deg",
         "Extend arm, 2 in",
     ]
     assert [len(arrows_in(axes)) for axes in panels] == [1, 1]

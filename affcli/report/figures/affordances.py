@@ -124,7 +124,7 @@ def _draw_table(
 
 def _draw_panel(axes: Axes, view: TableView, panel: _Panel) -> None:
     """Draw the rows of one panel over the tool, which turns with the wrist."""
-    turned = f", wrist at {panel.turn} deg" if panel.turn else ""
+    turned = f"\nwrist at {panel.turn} deg" if panel.turn else ""
     axes.set_title(call_words(panel.call) + turned)
     wrist = Pose(0.0, 0.0, math.radians(panel.turn))
     draw_parts(axes, view.parts, wrist)
