@@ -102,7 +102,13 @@ class Settings:
         Equal settings give equal mappings, in every version. The kind of the sensor is left out:
         a run names its sensor by itself.
         """
-        return {name: value for name, value in _unusual(self).items() if name != SENSOR}
+        first = first_defaults()
+        own = {
+            RENAMED.get(name, name): value
+            for name, value in self.values().items()
+            if value != first[name] and name != SENSOR
+        }
+        return dict(sorted({**own, **dict(self.unknown)}.items()))
 
 
 SECTIONS: dict[str, type[Any]] = {
@@ -197,11 +203,6 @@ def with_sensor(settings: Settings, kind: SensorKind | None) -> Settings:
     return replace(settings, sensor=replace(settings.sensor, kind=kind))
 
 
-def differences(settings: Settings) -> str:
-    """Return in words how settings differ from the defaults number 1: ``defaults``, or each one."""
-    return _in_words(_unusual(settings)) or "defaults"
-
-
 def load_colors(path: Path | None) -> tuple[ColorClass, ...]:
     """Return the colour classes of a TOML file, one section each; without one the paper's.
 
@@ -246,14 +247,6 @@ def _defaults() -> dict[str, Value]:
 def first_defaults() -> dict[str, Value]:
     """Return the defaults number 1, which stored settings differ from."""
     return _defaults() | {name: former[0] for name, former in CHANGED.items()}
-
-
-def _unusual(settings: Settings) -> dict[str, Value]:
-    """Return what differs from the defaults number 1, sorted by the first names."""
-    first = first_defaults()
-    values = settings.values()
-    own = {RENAMED.get(n, n): value for n, value in values.items() if value != first[n]}
-    return dict(sorted({**own, **dict(settings.unknown)}.items()))
 
 
 def _in_words(values: Mapping[str, Value]) -> str:
