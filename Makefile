@@ -13,7 +13,7 @@ DRAWN = $(wildcard tests/report/test_*figure*.py tests/report/test_*film*.py tes
   tests/report/test_table_map.py)
 QUICK = $(wildcard tests/analysis tests/exploration) tests/behaviors tests/conformance tests/core tests/planning \
   tests/procedures tests/simulation $(filter-out $(DRAWN),$(wildcard tests/report/test_*.py)) \
-  tests/test_config.py tests/test_golden.py tests/test_quoted.py tests/test_registry.py
+  tests/test_config.py tests/test_golden.py tests/test_quoted.py tests/test_readme_numbers.py tests/test_registry.py
 
 VENV := .venv
 AFFCLI := $(VENV)/bin/affcli
