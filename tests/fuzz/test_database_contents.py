@@ -105,44 +105,14 @@ def called(text: str) -> CommandLine:
     return CommandLine(named[tuple(words[:length])], tuple(words[length:]))
 
 
-CHECKS = (
-    "times_used >= 1 AND times_successful BETWEEN 0 AND times_used",
-    "robots >= 1",
-    "(hours IS NULL) <> (behaviors_limit IS NULL)",
-)
-
-
-@pytest.fixture(scope="session")
-def loose(furnished: Path) -> Path:
-    """The filled database as a copy without any constraint: other programs write such."""
-    path = furnished.parent / "loose.db"
-    shutil.copy(furnished / "filled.db", path)
-    with closing(sqlite3.connect(path)) as driver:
-        driver.execute("PRAGMA writable_schema = ON")
-        for word in (" NOT NULL", "STRICT"):
-            driver.execute(
-                "UPDATE sqlite_master SET sql = replace(sql, ?, '') WHERE type = 'table'", (word,)
-            )
-        driver.execute(
-            "UPDATE sqlite_master SET sql = replace(sql, 'WITHOUT ROWID,', 'WITHOUT ROWID')"
-        )
-        for check in CHECKS:
-            driver.execute(
-                "UPDATE sqlite_master SET sql = replace(sql, ?, '1') WHERE type = 'table'", (check,)
-            )
-        driver.commit()
-    return path
-
-
 def tables_of(driver: sqlite3.Connection) -> list[str]:
     named = driver.execute("SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name")
     return [name for (name,) in named]
 
 
 def spoil(database: Path, changes: Sequence[Change]) -> None:
-    """Change a database, constraints or not; a change that SQLite refuses is left out."""
+    """Change a database; a change that its constraints refuse is left out."""
     with closing(sqlite3.connect(database, isolation_level=None)) as driver:
-        driver.execute("PRAGMA ignore_check_constraints = ON")
         for change in changes:
             with suppress(sqlite3.Error):
                 spoil_once(driver, *change)
@@ -203,7 +173,7 @@ def spoil_once(
 
 
 WITH_JSON = (
-    *("settings", "versions", "checkpoint", "calibration"),
+    *("settings", "versions", "checkpoint", "calibration", "repertoire", "reasons", "definition"),
     *("binding_params", "exploratory_params"),
 )
 
@@ -273,19 +243,18 @@ def test_every_content_of_a_database_is_worked_with_or_refused(
     share: float,
     program: Program,
     place: Callable[[], Path],
-    loose: Path,
     fuzzing: Fuzz,
 ) -> None:
     home = place()
 
-    def check(case: tuple[list[Change], CommandLine, bool]) -> None:
-        made, line, strict = case
+    def check(case: tuple[list[Change], CommandLine]) -> None:
+        made, line = case
         emptied(home)
-        database = Path(shutil.copy(home / "filled.db" if strict else loose, home / "spoilt.db"))
+        database = Path(shutil.copy(home / "filled.db", home / "spoilt.db"))
         spoil(database, made)
         check_on(program, home, line)
 
-    cases = st.tuples(changes, commands_on_a_database(), st.booleans())
+    cases = st.tuples(changes, commands_on_a_database())
     fuzzing(f"databases: {kind}", check, cases, few=few, share=share)
 
 
