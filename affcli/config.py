@@ -249,6 +249,11 @@ def first_defaults() -> dict[str, Value]:
     return _defaults() | {name: former[0] for name, former in CHANGED.items()}
 
 
+def was_default(name: str, value: Value | None) -> bool:
+    """Tell whether a value was the default of a setting that has another one now."""
+    return value in CHANGED.get(name, ())
+
+
 def _in_words(values: Mapping[str, Value]) -> str:
     return ", ".join(
         f"{one_line(name)} = {one_line(value) if isinstance(value, str) else format(value, 'g')}"

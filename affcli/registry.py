@@ -13,12 +13,13 @@ from affcli.core.behavior import BehaviorCall, Repertoire
 from affcli.core.identity import Component
 from affcli.core.names import one_of
 from affcli.core.part import Kind, Part
+from affcli.core.setting import Value
+from affcli.core.tool import Tool, hold_of
 from affcli.errors import BadInputError, UsageError, one_line
 
 if TYPE_CHECKING:
     from affcli.config import Settings
     from affcli.core.ports import Explorer, Planner
-    from affcli.core.tool import Tool
     from affcli.core.workspace import ToolGeometry
     from affcli.core.world import Setting, World
 
@@ -54,8 +55,12 @@ REMEDY = "install what made the record"
 @cache
 def parts(kind: Kind) -> Mapping[str, Part]:
     """Return the parts of a kind by name, in the order in which their files name them."""
-    found = (part for module in _modules(ROOMS[kind]) for part in getattr(module, "PARTS", ()))
-    return {part.name: part for part in found if part.kind == kind}
+    named: dict[str, Part] = {}
+    for module in _modules(ROOMS[kind]):
+        for found in getattr(module, "PARTS", ()):
+            if found.kind == kind and named.setdefault(found.name, found) is not found:
+                raise BadInputError(f"two {kind} are named {found.name}; rename one")
+    return named
 
 
 def part(kind: Kind, name: str) -> Part:
@@ -75,22 +80,17 @@ def component(kind: Kind, text: str) -> Component:
         UsageError: no such part.
         BadInputError: an unknown parameter, a value out of its limits, or another form of text.
     """
-    given = Component.parse(text)
-    chosen = part(kind, given.name)
-    if given.version not in (1, chosen.version):
-        raise BadInputError(
-            f"{one_line(text, 60)}: this affcli has version {chosen.version} of {chosen.name}; "
-            "leave the version out"
-        )
-    return chosen.component(dict(given.params))
+    chosen, given = _named(kind, text)
+    return chosen.component(given)
 
 
 def binding(text: str, geometry: "ToolGeometry") -> BehaviorCall:
     """Return the binding behavior that a text names, for tools of these sizes."""
-    given = Component.parse(text)
-    chosen = part("bindings", given.name)
+    chosen, given = _named("bindings", text)
     # All that is given is handed on: what is left out, the sizes decide.
-    return chosen.build(geometry, **chosen.checked(dict(given.params)))  # type: ignore[no-any-return]
+    made: BehaviorCall = chosen.build(geometry, **chosen.checked(given))
+    hold_of(made)  # the robots know no binding but the grasp: better said before a run begins
+    return made
 
 
 def repertoire(texts: Sequence[str]) -> Repertoire:
@@ -108,9 +108,17 @@ def repertoire(texts: Sequence[str]) -> Repertoire:
     return tuple(chosen.values())
 
 
-def tool(name: str, geometry: "ToolGeometry") -> "Tool":
-    """Return a tool by name, in these sizes."""
-    return part("tools", name).build(geometry)  # type: ignore[no-any-return]
+def tool(text: str, geometry: "ToolGeometry") -> Tool:
+    """Return the tool that a text names, in these sizes.
+
+    Raises:
+        UsageError, BadInputError: as `component`; its part makes a tool of another name.
+    """
+    chosen = component("tools", text)
+    made: Tool = _built("tools", chosen)(geometry)
+    if made.name != chosen.name:
+        raise BadInputError(f"tool {chosen.name}: its part makes a {one_line(made.name, 40)}")
+    return made
 
 
 def planner(chosen: Component) -> "Planner":
@@ -125,8 +133,9 @@ def explorer(chosen: Component, setting: "Setting", settings: "Settings") -> "Ex
 
 
 def world(chosen: Component, settings: "Settings") -> "World":
-    """Return the world that a component names."""
-    return _built("worlds", chosen)(settings)  # type: ignore[no-any-return]
+    """Return the world that a component names, with all sets of tasks that there are."""
+    task_sets = {one.name: one.build for one in parts("tasks").values()}
+    return _built("worlds", chosen)(settings, task_sets)  # type: ignore[no-any-return]
 
 
 def recorded(kind: Kind, chosen: Component) -> Part:
@@ -139,6 +148,23 @@ def recorded(kind: Kind, chosen: Component) -> Part:
     if found is None:
         raise BadInputError(f"{_lacking(kind, chosen)} no such part; {REMEDY}")
     return found
+
+
+def _named(kind: Kind, text: str) -> tuple[Part, dict[str, Value]]:
+    """Return the part that a user's text names, and the parameters given with it, not yet checked.
+
+    Raises:
+        UsageError: no such part.
+        BadInputError: another form of text, or a version that is not here.
+    """
+    given = Component.parse(text)
+    chosen = part(kind, given.name)
+    if given.version not in (1, chosen.version):
+        raise BadInputError(
+            f"{one_line(text, 60)}: this affcli has version {chosen.version} of {chosen.name}; "
+            "leave the version out"
+        )
+    return chosen, dict(given.params)
 
 
 def _lacking(kind: Kind, chosen: Component) -> str:

@@ -113,6 +113,6 @@ def _value(text: str) -> Value:
     if text.isdecimal() and text.isascii():
         return int(text)
     try:
-        return float(text)
+        return text if "_" in text else float(text)  # Python takes 1_0 for a number
     except ValueError:
         return text

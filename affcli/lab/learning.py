@@ -1,11 +1,12 @@
 """Learning a tool: one robot babbles, and what it gives is saved chunk by chunk (§6)."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 
-from affcli.config import first_defaults, known_settings
+from affcli.config import first_defaults, known_settings, was_default
 from affcli.core.records import AlikeRun, ChangedPart, LearningRunInfo
+from affcli.core.setting import Setting
 from affcli.core.specs import LearningSpec, LearningStep
 from affcli.errors import DatabaseError
 from affcli.store import Store
@@ -112,22 +113,29 @@ def made_by_other_defaults(store: Store, spec: LearningSpec) -> tuple[AlikeRun, 
         spec: a new run; none are returned for one that the store has.
 
     Returns:
-        Each with what was otherwise: settings that the command leaves at their default, with their
-        values then and now; the world's version. A tool's shape follows from these and from the
-        version of affcli, the usual grasp from the tools' sizes.
+        Each with what was otherwise: settings that had a former default and now have another, or
+        that are no more, with their values then and now; the world's version. A tool's shape
+        follows from these and from the version of affcli, the usual grasp from the tools' sizes.
     """
     if store.learning.find(spec) is not None:
         return ()
-    usual = {name: one.default for name, one in known_settings().items()}
+    known = known_settings()
     found = []
     for alike in store.learning.find_alike(spec):
         changed = tuple(_with_values(one) for one in alike.changed)
         follows = {"world", "tool"}
         if any(one.name.startswith("tools.") for one in changed):
             follows.add("binding")
-        if all(one.name in follows or one.wanted == usual.get(one.name) for one in changed):
+        if all(one.name in follows or _by_default(one, known) for one in changed):
             found.append(AlikeRun(alike.run, changed))
     return tuple(found)
+
+
+def _by_default(part: ChangedPart, known: Mapping[str, Setting]) -> bool:
+    """Tell whether a setting differs by what its default was and is, and by nobody's wish."""
+    if part.name not in known:
+        return part.wanted is None
+    return part.wanted == known[part.name].default and was_default(part.name, part.stored)
 
 
 def _with_values(part: ChangedPart) -> ChangedPart:

@@ -11,9 +11,9 @@ from affcli.core.identity import Component, canonical_json
 from affcli.core.observation import SensorKind
 from affcli.core.specs import LearningSpec, Parts
 from affcli.core.task import Task
-from affcli.core.tool import Tool
+from affcli.core.tool import Tool, hold_of
 from affcli.core.world import World
-from affcli.errors import BadInputError, DatabaseError, one_line
+from affcli.errors import BadInputError, DatabaseError, UsageError, one_line
 from affcli.simulation.sensing import require_camera
 
 
@@ -90,7 +90,7 @@ def world_of(learned: LearningSpec, *, again: bool = False) -> World:
     settings, made = settings_of(learned), learned.world
     require_known(settings)
     require_shape(learned.held)
-    registry.recorded("bindings", Component(learned.binding.name))
+    hold_of(learned.binding)
     if again:
         require_world_version(made)
     here = replace(made, version=registry.recorded("worlds", made).version)
@@ -108,7 +108,11 @@ def require_shape(tool: Tool, where: str = "") -> None:
 
 def tasks_of(world: World, task_set: str) -> tuple[Task, ...]:
     """Return the tasks of a set; UsageError when there is no set of this name."""
-    return world.tasks(registry.part("tasks", task_set).name)
+    name = registry.part("tasks", task_set).name
+    try:
+        return world.tasks(name)
+    except KeyError:
+        raise UsageError(f"the world {world.name} has no tasks {name}; choose others") from None
 
 
 def require_world_version(made: Component) -> None:

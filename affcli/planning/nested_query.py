@@ -70,8 +70,8 @@ def top_by_expected_distance(
         dx = of(table.movement_x, rows, block)
         dy = of(table.movement_y, rows, block)
         squared[block] = goal.squared_distance(seen.object_position, dx, dy)
-    # In whole thousandths: a fifth of 5 rows is 1, not the 2 that ceil(0.2 * 5.000000001) gives.
-    kept = max(1, math.ceil(len(rows) * round(share * 1000) / 1000))
+    # Rounded first: 0.07 of 100 rows is 7, not the 8 that ceil(7.000000000000001) gives.
+    kept = max(1, math.ceil(round(len(rows) * share, 6)))
     return rows[smallest(squared, kept)]
 
 

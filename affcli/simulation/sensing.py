@@ -91,7 +91,7 @@ def eye_of(
     colors: dict[str, Color] = {
         known.name: known.color for known in paper_tools(workspace.tools).values()
     }
-    colors.setdefault(tool.name, tool.color)
+    colors[tool.name] = tool.color
     return _eye(camera, workspace, tuple(colors.items()), seed, robot)
 
 

@@ -1,6 +1,6 @@
 """The paper's table as a world: laid out for learning, trials and verifications (§4, §6, §7)."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -17,7 +17,7 @@ from affcli.core.specs import LearningSpec, RowStarts, TrialSpec, VerificationSp
 from affcli.core.task import Task
 from affcli.core.tool import Tool, hold_of
 from affcli.core.trial import Truth
-from affcli.core.workspace import Workspace
+from affcli.core.workspace import TaskLayout, Workspace
 from affcli.core.world import Film
 from affcli.perception.camera_settings import CameraSettings
 from affcli.perception.noisy_sensor import SensorSettings
@@ -26,8 +26,11 @@ from affcli.simulation.physics_settings import PhysicsSettings
 from affcli.simulation.robot import SimulatedRobot
 from affcli.simulation.sensing import SimulatedSight
 from affcli.simulation.table import Table
-from affcli.simulation.tasks import extension_of_reach
+from affcli.simulation.tasks.extension_of_reach import NAME, extension_of_reach
 from affcli.simulation.worlds import TABLE, TABLE_VERSION
+
+TaskSet = Callable[[TaskLayout], tuple[Task, ...]]
+PAPER_TASKS: Mapping[str, TaskSet] = {NAME: extension_of_reach}
 
 LEARNING, TRIAL, VERIFICATION, PREDICTION = 0, 1, 3, 4
 """First word of a random stream's key: what it is for. 2 is a camera's power-up (`sensing`)."""
@@ -134,6 +137,7 @@ class TableWorld:
 
     Args:
         settings: of everything on it.
+        task_sets: what makes the tasks of each set from where things are on the table, by name.
     """
 
     name = TABLE
@@ -141,8 +145,11 @@ class TableWorld:
     unit = "in"
     exact_replay = True
 
-    def __init__(self, settings: TableSettings) -> None:
+    def __init__(
+        self, settings: TableSettings, task_sets: Mapping[str, TaskSet] = PAPER_TASKS
+    ) -> None:
         self._settings = settings
+        self._task_sets = task_sets
         self._table = Table(settings.workspace, settings.physics)
 
     def packages(self, sensor: SensorKind) -> tuple[str, ...]:
@@ -152,9 +159,7 @@ class TableWorld:
 
     def tasks(self, task_set: str) -> tuple[Task, ...]:
         """Return the tasks of a set by its name; KeyError when there is no such set."""
-        if task_set != extension_of_reach.NAME:
-            raise KeyError(task_set)
-        return extension_of_reach.extension_of_reach(self._settings.workspace.layout)
+        return self._task_sets[task_set](self._settings.workspace.layout)
 
     def learning(self, spec: LearningSpec, *, laid_out: bool = True) -> TableSetting:
         """Lay out a learning run (§6); without `laid_out` a snapshot is restored next."""

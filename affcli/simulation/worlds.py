@@ -1,5 +1,6 @@
 """The worlds that affcli brings, by name; their engines load when a world is made."""
 
+from collections.abc import Mapping
 from importlib import import_module
 from typing import Any
 
@@ -9,9 +10,9 @@ TABLE, TABLE_VERSION = "table", 1
 """The version is raised when equal specs give other records: by another physics, for example."""
 
 
-def table_world(settings: Any) -> Any:
+def table_world(settings: Any, task_sets: Mapping[str, Any]) -> Any:
     """Return the paper's table (`affcli.simulation.table_world.TableWorld`)."""
-    return import_module("affcli.simulation.table_world").TableWorld(settings)
+    return import_module("affcli.simulation.table_world").TableWorld(settings, task_sets)
 
 
 PARTS = (

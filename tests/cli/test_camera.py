@@ -267,9 +267,9 @@ def test_what_is_no_number_is_a_usage_error(folder: Path) -> None:
 
 def test_without_a_command_it_says_which_there_are(tmp_path: Path) -> None:
     ended = affcli("camera", cwd=tmp_path)
-    assert (ended.code, ended.out) == (2, "")
+    assert (ended.code, ended.err) == (0, "")
     for command in ("calibrate", "locate", "view"):
-        assert f"\n  {command} " in ended.err
+        assert f"\n  {command} " in ended.out
 
 
 def test_a_file_is_written_over_only_by_force(folder: Path) -> None:

@@ -382,8 +382,8 @@ def test_reading_changes_nothing(used: Path) -> None:
 
 def test_without_a_command_it_says_which_there_are(tmp_path: Path) -> None:
     ended = affcli("table", cwd=tmp_path)
-    assert (ended.code, ended.out) == (2, "")
-    assert [line.split()[0] for line in ended.err.split("Commands:\n")[1].splitlines()] == [
+    assert (ended.code, ended.err) == (0, "")
+    assert [line.split()[0] for line in ended.out.split("Commands:\n")[1].splitlines()] == [
         "list",
         "show",
         "export",
