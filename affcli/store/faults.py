@@ -84,7 +84,7 @@ def faults_named(path: Path, waited: float) -> Iterator[None]:
                 f"{one_line(path)}: holds text that is none and that affcli did not write; restore "
                 "a copy of the file"
             ) from error
-        if any(words in said for words in NO_COLUMN):
+        if code and any(words in said for words in NO_COLUMN):
             raise DatabaseError(
                 f"{one_line(path)}: damaged, {said}; restore a copy of the file"
             ) from error
