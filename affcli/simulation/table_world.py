@@ -13,6 +13,7 @@ from affcli.core.identity import stream_number
 from affcli.core.observation import Movement, SensorKind
 from affcli.core.ports import Sensor
 from affcli.core.scene import Scene
+from affcli.core.setting import LARGEST
 from affcli.core.specs import LearningSpec, RowStarts, TrialSpec, VerificationSpec
 from affcli.core.task import Task
 from affcli.core.tool import Tool, hold_of
@@ -125,6 +126,8 @@ class TableSetting:
         self.robot.clock = float(snapshot["clock"])
         self.table.wrist = Pose(*map(float, snapshot["wrist"]))
         self.table.attractor = Pose(*map(float, snapshot["attractor"]))
+        if not all(abs(value) <= LARGEST for value in (*self.table.wrist, *self.table.attractor)):
+            raise ValueError("nothing is that far from the table")
         if holding is not None:
             self.table.take(hold_of(holding))
         self.robot.holding = holding
