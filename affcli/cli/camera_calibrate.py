@@ -11,6 +11,7 @@ from affcli import lab
 from affcli.cli.files import require_new, save
 from affcli.cli.options import (
     AsJson,
+    Changes,
     Config,
     Force,
     Seed,
@@ -73,6 +74,7 @@ def calibrate(
     out: Out = None,
     seed: Seed = 0,
     config: Config = None,
+    changes: Changes = None,
     force: Force = False,
     as_json: AsJson = False,
 ) -> None:
@@ -100,14 +102,16 @@ def calibrate(
     )
     if image is None and (own or color is not None):
         raise UsageError("what describes the pattern goes with an IMAGE of it; give one")
-    if image is not None and (seed != 0 or config is not None):
-        raise UsageError("--seed and --config are the simulated camera's; leave out IMAGE or them")
+    if image is not None and (seed != 0 or config is not None or changes):
+        raise UsageError(
+            "--seed, --config and --set are the simulated camera's; leave out IMAGE or them"
+        )
     if out is not None:
         require_new(out, force=force)
 
     require_camera()
     if image is None:
-        found = lab.photographs.eye_at(load_settings(config), seed).calibration
+        found = lab.photographs.eye_at(load_settings(config, changes or ()), seed).calibration
         values = found.as_json()
     else:
         pattern = lab.photographs.pattern_of(columns, rows, spacing, first, turn)

@@ -10,6 +10,7 @@ from affcli.cli.database import opened
 from affcli.cli.files import require_new, save
 from affcli.cli.options import (
     DEFAULT_DATABASE,
+    Changes,
     Config,
     Database,
     Force,
@@ -63,6 +64,7 @@ def view(
     seed: Seed = 0,
     database: Database = DEFAULT_DATABASE,
     config: Config = None,
+    changes: Changes = None,
     force: Force = False,
 ) -> None:
     """Show what the camera sees and how it is segmented.
@@ -73,12 +75,19 @@ def view(
     the table as a trial begins.
     """
     _check_what(
-        trial, run, step, after=after, pattern=pattern, video=video, out=out, own=(seed, config)
+        trial,
+        run,
+        step,
+        after=after,
+        pattern=pattern,
+        video=video,
+        out=out,
+        own=(seed, config, changes),
     )
     _check_where(out, video, force=force)
 
     require_camera()
-    settings = load_settings(config)
+    settings = load_settings(config, changes or ())
     scene = _stored_scene(database, trial, run, step)
     if scene is not None:
         shown = lab.viewing.view_of_step(scene, after=after)
@@ -105,15 +114,15 @@ def _check_what(
     pattern: bool,
     video: Path | None,
     out: Path | None,
-    own: tuple[int, Path | None],
+    own: tuple[int, Path | None, list[str] | None],
 ) -> None:
     """Refuse options that do not go together: nothing that is asked for is ignored."""
     if [trial is not None, run is not None, pattern].count(True) > 1:
         raise UsageError("give one of --trial, --run and --pattern")
     stored = trial is not None or run is not None
-    if stored and own != (0, None):
+    if stored and any(own):
         raise UsageError(
-            "--trial and --run have a seed and settings: leave out --seed and --config"
+            "--trial and --run have a seed and settings: leave out --seed, --config and --set"
         )
     if after and out is None:
         raise UsageError("--after is for a picture: give --out FILE.png; a video shows all of it")

@@ -17,6 +17,7 @@ from affcli.cli.options import (
     FIGURE_ENDINGS,
     LARGEST_ID,
     Becomes,
+    Changes,
     Config,
     Database,
     FigureOut,
@@ -141,6 +142,7 @@ def workspace(
         ),
     ] = DEFAULT_TOOL,
     config: Config = None,
+    changes: Changes = None,
     force: Force = False,
 ) -> None:
     """Draw the table: goals, starts, tool, reach of the arm.
@@ -148,7 +150,7 @@ def workspace(
     As in Fig. 8, as a trial begins.
     """
     check_out(out, force=force)
-    place = load_settings(config).workspace
+    place = load_settings(config, changes or ()).workspace
     reach = reach_at(place.arm, place.arm.flange_height)
     lying = registry.tool(tool, place.tools)
     tasks = extension_of_reach(place.layout)
@@ -166,6 +168,7 @@ def tools(
     ] = DEFAULT_TOOL,
     becomes: Becomes = DEFAULT_BROKEN,
     config: Config = None,
+    changes: Changes = None,
     force: Force = False,
 ) -> None:
     """Draw the five tools to scale, and one that broke.
@@ -173,7 +176,7 @@ def tools(
     As in Figs. 1 and 9, with the names of their parts.
     """
     check_out(out, force=force)
-    place = load_settings(config).workspace
+    place = load_settings(config, changes or ()).workspace
     known = [registry.tool(name, place.tools) for name in registry.parts("tools")]
     whole, left = (registry.tool(name, place.tools) for name in (tool, becomes))
     if left.parts_missing_in(whole) or not whole.parts_missing_in(left):

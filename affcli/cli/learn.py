@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from affcli import lab
+from affcli import lab, registry
 from affcli import store as stores
 from affcli.cli.database import opened
 from affcli.cli.options import (
@@ -29,8 +29,9 @@ from affcli.cli.terminal import now, progress, say, show_either
 from affcli.config import load_settings, with_sensor
 from affcli.core.limits import MOST_BEHAVIORS
 from affcli.core.records import AlikeRun, LearningRunInfo
+from affcli.core.results import BehaviorGroup
 from affcli.core.specs import LearningSpec
-from affcli.errors import UsageError
+from affcli.errors import BadInputError, UsageError
 from affcli.report.learning import groups_json, groups_table, run_json, summary
 from affcli.simulation.tools.paper import TOOL_PARTS
 
@@ -74,18 +75,9 @@ def learn(
     The same command again says that the run is done; after an interruption it goes on, as does
     --resume alone.
     """
-    if all_tools and tool:
-        raise UsageError("give --tool or --all-tools, not both")
-    names = list(TOOL_PARTS) if all_tools else list(tool or ())
-    if not names and not resume:
-        raise UsageError(f"which tool? give --tool {'|'.join(TOOL_PARTS)}, or --all-tools")
-    own = (hours, behaviors, sensor, config, binding, explorer, world)
-    if not names and (seed, any(one is not None for one in own)) != (0, False):
-        raise UsageError("--resume alone: an interrupted run has its own hours, seed and settings")
-    if not names and (changes or repertoire):
-        raise UsageError("--resume alone: an interrupted run has its own settings and behaviors")
-    if hours is not None and behaviors is not None:
-        raise UsageError("give --hours or --behaviors, not both")
+    names = _tools_asked_for(tool, all_tools=all_tools)
+    own = (hours, behaviors, seed, sensor, config, changes, repertoire, binding, explorer, world)
+    _check_together(names, hours, behaviors, resume=resume, own=any(own))
     if behaviors is None and hours is None:
         hours = 1.0
 
@@ -99,9 +91,7 @@ def learn(
             specs = lab.learning.interrupted(store)
             if not specs:
                 raise UsageError(f"nothing to resume in {database}; learn a tool: --tool t-hook")
-        results = [_learn(store, spec) for spec in specs]
-        groups = [store.results.behavior_groups(learned.info.id) for learned in results]
-    found = list(zip(results, groups, strict=True))
+        found, stuck = _learn_all(store, specs, all_or_none=bool(names))
     show_either(
         as_json=as_json,
         value=lambda: [
@@ -110,6 +100,50 @@ def learn(
         ],
         tables=lambda: [groups_table(learned.info, group) for learned, group in found],
     )
+    if stuck:
+        for line in stuck[:-1]:
+            say(line)
+        raise BadInputError(stuck[-1])
+
+
+def _tools_asked_for(tool: list[str] | None, *, all_tools: bool) -> list[str]:
+    """Return the tools that are asked for: none to go on with what was interrupted."""
+    if all_tools and tool:
+        raise UsageError("give --tool or --all-tools, not both")
+    return list(TOOL_PARTS) if all_tools else list(tool or ())
+
+
+def _check_together(
+    names: list[str], hours: float | None, behaviors: int | None, *, resume: bool, own: bool
+) -> None:
+    """Refuse options that do not go together: nothing that is asked for is ignored."""
+    if not names and not resume:
+        known = "|".join(registry.parts("tools"))
+        raise UsageError(f"which tool? give --tool {known}, or --all-tools")
+    if not names and own:
+        raise UsageError("--resume alone: an interrupted run has its own hours, seed and settings")
+    if hours is not None and behaviors is not None:
+        raise UsageError("give --hours or --behaviors, not both")
+
+
+def _learn_all(
+    store: "stores.Store", specs: list[LearningSpec], *, all_or_none: bool
+) -> tuple[list[tuple["lab.learning.Learned", tuple[BehaviorGroup, ...]]], list[str]]:
+    """Return what the runs gave, with their rows counted, and why others cannot go on.
+
+    A run whose parts are not all here does not keep the others from going on, unless `all_or_none`.
+    """
+    found, stuck = [], []
+    for spec in specs:
+        try:
+            learned = _learn(store, spec)
+        except BadInputError as error:
+            if all_or_none:
+                raise
+            stuck.append(f"the interrupted {spec.tool}, seed {spec.seed}: {error}")
+        else:
+            found.append((learned, store.results.behavior_groups(learned.info.id)))
+    return found, stuck
 
 
 def _learn(store: "stores.Store", spec: LearningSpec) -> "lab.learning.Learned":

@@ -87,14 +87,14 @@ def checked_numbers(option: str, text: str, count: int) -> list[float]:
 
 
 def checked_tool(name: str) -> str:
-    """Return the name of a registered tool; UsageError with the nearest names for another."""
-    return registry.part("tools", name).name
+    """Return how a registered tool is named, with its parameters if they are not the default."""
+    return str(registry.component("tools", name))
 
 
 def checked_tools(names: Iterable[str] | None) -> list[str]:
-    """Return names of registered tools, each given by itself or several with commas, once each."""
-    single = [part for name in names or () for part in name.split(",")]
-    return list(dict.fromkeys(map(checked_tool, single)))
+    """Return registered tools, each given by itself or several names with commas, once each."""
+    given = ([text] if ":" in text else text.split(",") for text in names or ())
+    return list(dict.fromkeys(checked_tool(tool) for several in given for tool in several))
 
 
 def check_if_given(check: Callable[[Any], Any]) -> Callable[[Any], Any]:

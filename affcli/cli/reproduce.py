@@ -72,10 +72,8 @@ def reproduce(
     The result is the same for any number of workers. An interrupted reproduction goes on when the
     same command is given again, as does the latest one with --resume alone.
     """
-    parts = (repertoire, binding, explorer, world)
-    own = (robots, seed, sensor, config, changes, *parts, str(planner)) != (
-        *(None, 0, None, None, None, None, None, None, None, DEFAULT_PLANNER),
-    )
+    given = (robots, seed, sensor, config, changes, repertoire, binding, explorer, world)
+    own = any(given) or str(planner) != DEFAULT_PLANNER
     if robots is None:
         robots = FEW_ROBOTS
     if workers is None:

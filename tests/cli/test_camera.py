@@ -200,7 +200,7 @@ BAD_OPTIONS: dict[str, tuple[tuple[str, ...], str]] = {
     "too few markers": (("--markers", "2x2"), "--markers 2x2: must be columns x rows, each 3"),
     "too many markers": (("--markers", "99x99"), "--markers 99x99: must be columns x rows"),
     "markers of 10 kB": (("--markers", "9" * 10_000), "--markers 999"),
-    "other markers": (("--markers", "6x5"), "pattern.png: 36 things of one colour found, and no grid of 6x5"),
+    "other markers": (("--markers", "6x5"), "and no grid of 6x5 among them"),
     "no spacing": (("--spacing", "0"), "--spacing 0.0: must lie in 0.001 to 10000"),
     "spacing no number": (("--spacing", "nan"), "--spacing nan: must "),
     "negative spacing": (("--spacing", "-1"), "--spacing -1.0: must lie in 0.001 to 10000"),

@@ -5,12 +5,15 @@ import signal
 import subprocess
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from affcli.core.identity import Component
+from affcli.store import open_store
 from tests.cli.program import (
     Ended,
     affcli,
@@ -22,6 +25,8 @@ from tests.cli.program import (
     started,
     wait_until,
 )
+from tests.factories import learning_spec
+from tests.lab.quick import NOW
 
 LONG = ("learn", "--tool", "stick", "--behaviors", "7000")
 GOES_ON = (
@@ -111,6 +116,20 @@ def test_resume_alone_goes_on_with_every_interrupted_run(tmp_path: Path) -> None
     for command in runs:
         done(*command, "--db", alone)
     assert by_key(database) == by_key(alone)
+
+
+def test_a_run_whose_part_is_missing_does_not_keep_the_others_from_going_on(
+    tmp_path: Path,
+) -> None:
+    database, spec = tmp_path / "my.db", learning_spec("stick", behaviors=3)
+    with open_store(database, create=True, write=True) as store:
+        for one in (replace(spec, explorer=Component("curious")), replace(spec, seed=5)):
+            store.learning.begin(one, {}, NOW)
+    ended = affcli("learn", "--resume", "--db", database)
+    learned, missing = ended.err.splitlines()
+    assert ended.code == 4
+    assert learned.startswith("learned stick (run 2, seed 5)")
+    assert "the interrupted stick, seed 0: explorer curious: this affcli has no" in missing
 
 
 def by_key(database: Path) -> dict[str, list[tuple[object, ...]]]:

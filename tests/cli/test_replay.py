@@ -14,12 +14,12 @@ import pytest
 from rich.cells import cell_len
 
 from affcli.lab.learning_run import LearningRun
-from affcli.lab.solving import WantedTasks, solve
 from affcli.store import open_store
 from tests.cli.program import Ended, affcli, done, refused, rows, started, wait_until
+from tests.cli.table_rows import tamper
 from tests.cli.test_interrupt import handles_signals, stopped
 from tests.factories import learning_spec
-from tests.lab.quick import NOW, PLANNER, now
+from tests.lab.quick import NOW
 
 SOLVED = "5"
 """The T-hook brings the attractor over goal 2 from start 1."""
@@ -171,12 +171,12 @@ def test_away_from_a_terminal_nothing_is_wider_than_the_screen(columns: int, use
 
 
 def interrupted(database: Path, steps: int) -> int:
-    """Begin a trial and stop it after some steps; return its number."""
-    with open_store(database, create=False, write=True) as store:
-        wanted = WantedTasks("extension-of-reach", "1", "1")
-        trial = solve(store, [store.learning.run(1)], wanted, 0, now, PLANNER)
-        assert len(list(islice(trial, steps))) == steps
-    ((number,),) = rows(database, "SELECT max(id) FROM trial")
+    """Leave of a trial what affcli left when it still saved step by step; return its number."""
+    affcli("solve", "--goal", "1", "--start", "1", "--run", "1", "--db", database)
+    ((number, whole),) = rows(database, "SELECT id, steps FROM trial")
+    assert steps < whole
+    tamper(database, "DELETE FROM step WHERE trial_id = ? AND number > ?", number, steps)
+    tamper(database, "UPDATE trial SET outcome = NULL, steps = NULL, robot_seconds = NULL")
     return int(number)
 
 
