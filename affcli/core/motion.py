@@ -1,7 +1,8 @@
 """Motions: what an exploratory behavior asks of the wrist, as segments one after the other (§5).
 
-A motion is told from where the wrist is when it begins. Its directions are the table's axes, not
-those of the hand: so are the offsets between wrist and attractor that the robot observes (o4 to o6,
+A slide is told from where the wrist is when it begins, a carry by where it ends: a row with a carry
+is done again at that place of the table alone. Directions are the table's axes, not those of the
+hand: so are the offsets between wrist and attractor that the robot observes (o4 to o6,
 §5.2), and a row can be done again from the same offset only when both are told in the same axes. A
 row carries the wrist's angle, and position wrist restores it; at an equal angle the two choices say
 the same.

@@ -23,7 +23,8 @@ class Part:
         name: by which it is asked for and recorded.
         summary: what it is, in a sentence.
         source: where it comes from: ``Stoytchev 2008, §6.2``, or who added it.
-        build: makes it; called with what its kind needs and then with its parameters by name.
+        build: makes it; called with what its kind needs and then with its parameters by name. (Of a
+            sensor it is only named here: `simulation.sensing` makes the three that there are.)
         params: its parameters by name.
         version: raised when the same parameters give other results.
     """

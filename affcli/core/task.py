@@ -14,7 +14,7 @@ ALL_STARTS = "all"
 
 @dataclass(frozen=True, slots=True)
 class GoalRegion:
-    """A colour-coded square on the table; a `Goal` of `core.ports`.
+    """A colour-coded square on the table; a `Goal` of `core.goal`.
 
     Args:
         name: what the goal is called: ``1`` to ``4`` as in Fig. 8, or another name.
