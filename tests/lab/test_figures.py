@@ -1,11 +1,14 @@
 """What figures of testing trials gather, against the stored records counted one by one."""
 
 import sys
+from dataclasses import replace
 from statistics import fmean
 
 import pytest
 
+from affcli.analysis.paper import other_parts
 from affcli.config import Settings, settings_with
+from affcli.core.behavior import GRASP, BehaviorCall
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome
@@ -25,6 +28,7 @@ from tests.lab.quick import (
     altered,
     breaking,
     counted,
+    now,
     reproducing,
     solving,
     spec_of,
@@ -183,6 +187,21 @@ def test_results_of_single_robots(store: Store, run: LearningRunInfo) -> None:
     assert results_title(results) == f"one robot a tool: run {again.id} (noisy)"
     assert results.broken is not None
     assert results.total is None
+
+
+def test_a_later_run_with_other_parts_does_not_hide_the_paper_s(
+    store: Store, run: LearningRunInfo
+) -> None:
+    counted(solving(store, run, "1", "1"))
+    held = replace(spec_of("t-hook", 60), binding=BehaviorCall.of(GRASP, {"grasp_point": 2.0}))
+    other = store.learning.begin(held, {}, now())
+    store.learning.append(other.id, 0, (), None, 0.0, done=True, now=now())
+    latest = store.learning.latest("t-hook")
+    assert latest is not None
+    assert (latest.id, sorted(other_parts(latest.spec))) == (other.id, ["binding"])
+    results = results_in(store, None)
+    assert results.runs == {"noisy": [run.id]}
+    assert results.cells["t-hook", "1"].tried == 1
 
 
 def test_without_matplotlib_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
