@@ -76,7 +76,7 @@ class Breaking:
     """One session in which a tool broke: the broken tool's trials and the whole one's.
 
     Args:
-        session, run, seed, tool, shape, sensor, planner: which.
+        session, run, seed, tool, shape, sensor, planner, task_set: which.
         papers: tool, shape, tasks, planner and the parts of learning are the paper's.
         broken, whole: counts of its trials.
     """
@@ -88,6 +88,7 @@ class Breaking:
     shape: str
     sensor: str
     planner: str
+    task_set: str
     papers: bool
     broken: ProtocolCounts
     whole: ProtocolCounts
@@ -154,7 +155,7 @@ def breaking_of(
     first = adapting[0]
     return Breaking(
         *(session.id, results[0].run_id, session.spec.seed, first.tool, first.shape),
-        *(first.sensor, str(first.planner)),
+        *(first.sensor, str(first.planner), first.task_set),
         papers=not other_parts(session.spec) and all(map(papers_break, adapting)),
         broken=counts[Protocol.TOOL_ADAPTATION],
         whole=counts[Protocol.EXTENSION_OF_REACH],
