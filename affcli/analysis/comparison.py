@@ -82,7 +82,7 @@ def results_of_many(result: Reproduction) -> Results:
         cell: Beside(EXTENSION_OF_REACH[cell], counts, STARTS)
         for cell, counts in result.cells.items()
     }
-    total = Beside(TOTAL, result.totals, TRIALS) if cells else None
+    total = Beside(TOTAL, result.totals, TRIALS) if result.totals else None
     broken = Beside(BROKEN, result.broken, BROKEN_TRIALS) if result.broken else None
     spec = result.session.spec
     for kind, goals in result.others.items():
@@ -96,7 +96,9 @@ def results_of_many(result: Reproduction) -> Results:
             cells |= {(kind.tool, goal): beside for goal, beside in alone.items()}
         elif broken is None:
             broken = _sum(alone.values())
-    return Results(result.session, result.robots, {}, cells, total or _sum(cells.values()), broken)
+    if not result.cells:
+        total = _sum(cells.values())
+    return Results(result.session, result.robots, {}, cells, total, broken)
 
 
 def _sum(cells: Collection[Beside]) -> Beside | None:

@@ -17,6 +17,7 @@ from affcli.report.figure_titles import results_note, results_title
 from affcli.report.figures.canvas import INK, PALE, SKY, TWO_COLUMNS, VERMILION, canvas, head
 from affcli.report.figures.key import draw_key
 from affcli.report.figures.maps import columns_for
+from affcli.report.words import in_order
 
 MOST_BESIDE = 4
 """Goals in a row of the page."""
@@ -36,7 +37,7 @@ PAPER: dict[str, Any] = {
 
 def results_figure(results: Results) -> Figure:
     """Draw the results: a panel a goal with a row a tool; total and broken tool beside them."""
-    goals = list(dict.fromkeys(goal for _, goal in results.cells))
+    goals = in_order(goal for _, goal in results.cells)
     tools = list(dict.fromkeys(tool for tool, _ in results.cells))
     most = max(STARTS, *(cell.tried for cell in results.cells.values()))
     across = columns_for(len(goals), MOST_BESIDE)

@@ -122,9 +122,9 @@ def _results(content: Content) -> dict[str, Any]:
             "failed_of": tried,
         }
     result = reproduction_json(content.reproduction)
-    by_tool: dict[str, list[dict[str, Any]]] = defaultdict(list)
+    by_tool: dict[str, dict[str, dict[str, Any]]] = defaultdict(dict)
     for cell in result["cells"]:
-        by_tool[cell["tool"]].append(cell)
+        by_tool[cell["tool"]][cell["goal"]] = cell
     return {
         **shared,
         "result": result,
