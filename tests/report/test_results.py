@@ -235,13 +235,17 @@ def test_each_panel_is_out_of_what_was_tried_in_it(robots: int) -> None:
     assert panels["goal 5"].get_xlim()[1] > 16.0
 
 
-def test_of_each_start_the_latest_trial_counts_and_only_the_paper_s() -> None:
+def test_of_each_start_the_latest_trial_counts_and_only_the_paper_s_are_compared() -> None:
     again = [
         result("stick", "2", 1, solved=False, run_id=7),
         result("stick", "2", 1, run_id=8, sensor="camera"),
         result("stick", "2", 2, run_id=8, outcome=Outcome.INVALID),
+    ]
+    others = [
         result("stick", "2", 3, planner="nested-query:share=0.05"),
+        result("stick", "5", 1, solved=False),
         result("stick", "5", 1),
+        result("stick", "5", 2, solved=False),
         result("stick", "2", 4, task_set="far-corners"),
         result("spoon", "2", 1),
     ]
@@ -249,4 +253,23 @@ def test_of_each_start_the_latest_trial_counts_and_only_the_paper_s() -> None:
     assert (found.cells["stick", "2"].counts, found.cells["stick", "2"].tried) == ([1], 1)
     assert sum(cell.tried for cell in found.cells.values()) == 1
     assert results_title(found) == "one robot a tool: run 8 (camera)"
-    assert results_of_single(again[3:], BROKEN) is None
+    alone = single(others, BROKEN)
+    assert alone.cells == {
+        ("stick, nested-query:share=0.05", "2"): Beside(None, [1], 1),
+        ("stick", "5"): Beside(None, [1], 2),
+        ("stick, far-corners", "2"): Beside(None, [1], 1),
+        ("spoon", "2"): Beside(None, [1], 1),
+    }
+    assert alone.total == Beside(None, [4], 5)
+    both = single([*others, *again], BROKEN)
+    assert both.cells == {**found.cells, **alone.cells}
+    assert both.total is None
+    assert single([*others, *SOLVED], BROKEN).total == Beside(TOTAL, [80], 80)
+    figure = results_figure(both)
+    assert figure.axes[1].get_xlabel() == "successes of 4"
+    assert [label.get_text() for label in figure.axes[0].get_yticklabels()][-3:] == [
+        *("stick, nested-query:share=0.05", "stick, far-corners", "spoon"),
+    ]
+    figure.draw_without_rendering()
+    assert all(axes.get_window_extent().width > 0.4 * figure.dpi for axes in figure.axes)
+    assert results_of_single(again[2:], BROKEN) is None

@@ -13,9 +13,8 @@ from affcli.analysis.overview import goal_counts
 from affcli.analysis.paper import (
     BROKEN_TRIALS,
     GOALS,
-    PLANNER,
-    TASK_SET,
     TRIALS,
+    row_name,
 )
 from affcli.analysis.statistics import ENOUGH_ROBOTS
 from affcli.core.specs import Protocol
@@ -148,8 +147,9 @@ def _single(content: Content) -> tuple[list[str], list[tuple[str, list[dict[str,
     rows: dict[str, dict[str, dict[str, Any]]] = defaultdict(dict)
     for one in counts:
         by = one.by
-        named = ((by.planner, {PLANNER}), (by.task_set, {TASK_SET}), (by.sensor, sensors))
-        name = ", ".join([by.tool, *(text for text, usual in named if {text} != usual)])
+        name = row_name(by.tool, by.planner, by.task_set)
+        if len(sensors) > 1:
+            name += f", {by.sensor}"
         for goal, (solved, tried) in one.goals.items():
             rows[name][goal] = {"solved": solved, "tried": tried, "paper": one.paper(goal)}
     goals = in_order(goal for cells in rows.values() for goal in cells)
