@@ -226,6 +226,11 @@ def test_the_page_names_planners_and_what_is_not_drawn_or_done_again(page: str) 
     assert data_in(page)["trials"][1]["left"] == ["140 imagined", "expected distance 3.25"]
 
 
+def test_the_page_says_of_tools_only_what_it_counted(page: str) -> None:
+    """Which tool pulls is a matter of the repertoire; this robot had no stick."""
+    assert "stick" not in page.split("How trials failed")[1].split("</section>", maxsplit=1)[0]
+
+
 def test_an_unknown_tool_is_named_and_the_rest_is_drawn() -> None:
     shown = run_shown(tenants.info(7), list(tenants.SPOONS.rows.values()), 1.5)
     assert shown.title.endswith("not drawn, for this affcli does not know the shape: spoon")
