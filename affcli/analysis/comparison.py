@@ -12,6 +12,7 @@ from affcli.analysis.paper import (
     TRIALS,
     papers_break,
     papers_cell,
+    row_name,
 )
 from affcli.analysis.reproduction import Reproduction
 from affcli.analysis.statistics import ENOUGH_ROBOTS, Spread
@@ -82,7 +83,7 @@ def results_of_many(result: Reproduction) -> Results:
         cell: Beside(EXTENSION_OF_REACH[cell], counts, STARTS)
         for cell, counts in result.cells.items()
     }
-    total = Beside(TOTAL, result.totals, TRIALS) if cells else None
+    total = Beside(TOTAL, result.totals, TRIALS) if result.totals else None
     broken = Beside(BROKEN, result.broken, BROKEN_TRIALS) if result.broken else None
     spec = result.session.spec
     for kind, goals in result.others.items():
@@ -96,7 +97,9 @@ def results_of_many(result: Reproduction) -> Results:
             cells |= {(kind.tool, goal): beside for goal, beside in alone.items()}
         elif broken is None:
             broken = _sum(alone.values())
-    return Results(result.session, result.robots, {}, cells, total or _sum(cells.values()), broken)
+    if not result.cells:
+        total = _sum(cells.values())
+    return Results(result.session, result.robots, {}, cells, total, broken)
 
 
 def _sum(cells: Collection[Beside]) -> Beside | None:
@@ -117,13 +120,15 @@ def results_of_single(
         breaking: trials with broken tools, likewise.
 
     Returns:
-        The results; None when none of the trials is the paper's.
+        The results: the paper's cells, if any of them was tried, then what the paper has not, with
+        nothing beside it; None without trials with whole tools.
     """
-    whole = {
-        (t.spec.tool, t.spec.goal, t.spec.start): t
-        for t in solving
-        if t.outcome not in UNCOUNTED and papers_cell(t.spec)
-    }
+    whole: dict[tuple[str, str, str], TrialInfo] = {}
+    for trial in solving:
+        if trial.outcome not in UNCOUNTED:
+            of = trial.spec
+            name = row_name(of.tool, str(of.planner), of.task_set)
+            whole[name, of.goal, of.start] = trial
     broken = {
         (t.spec.goal, t.spec.start): t
         for t in breaking
@@ -131,15 +136,14 @@ def results_of_single(
     }
     if not whole:
         return None
-    tried: dict[tuple[str, str], list[bool]] = {cell: [] for cell in EXTENSION_OF_REACH}
-    for (tool, goal, _), trial in whole.items():
-        tried[tool, goal].append(trial.outcome is Outcome.SOLVED)
+    papers = any(papers_cell(trial.spec) for trial in whole.values())
+    tried: dict[tuple[str, str], list[bool]] = {cell: [] for cell in EXTENSION_OF_REACH if papers}
+    for (name, goal, _), trial in whole.items():
+        tried.setdefault((name, goal), []).append(trial.outcome is Outcome.SOLVED)
     cells = {
-        cell: Beside(paper, [sum(tried[cell])] if tried[cell] else [], len(tried[cell]))
-        for cell, paper in EXTENSION_OF_REACH.items()
+        cell: Beside(EXTENSION_OF_REACH.get(cell), [sum(some)] if some else [], len(some))
+        for cell, some in tried.items()
     }
-    all_tried = all(cell.tried == STARTS for cell in cells.values())
-    solved = sum(sum(cell.counts) for cell in cells.values())
     solved_broken = sum(trial.outcome is Outcome.SOLVED for trial in broken.values())
     runs: dict[str, list[int]] = {
         sensor: sorted({trial.run_id for trial in whole.values() if trial.spec.sensor == sensor})
@@ -147,6 +151,14 @@ def results_of_single(
     }
     return Results(
         *(None, 1, runs, cells),
-        Beside(TOTAL, [solved], TRIALS) if all_tried else None,
+        _papers_total(cells) if papers else _sum(cells.values()),
         Beside(BROKEN, [solved_broken], len(broken)) if len(broken) == BROKEN_TRIALS else None,
     )
+
+
+def _papers_total(cells: Mapping[tuple[str, str], Beside]) -> Beside | None:
+    """Return what was solved of the paper's 80 trials; None when some were not done."""
+    own = [cells[cell] for cell in EXTENSION_OF_REACH]
+    if any(cell.tried < STARTS for cell in own):
+        return None
+    return Beside(TOTAL, [sum(sum(cell.counts) for cell in own)], TRIALS)

@@ -1,5 +1,6 @@
 """What a database holds: learned tools, trials, finished reproductions."""
 
+import typing
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -8,8 +9,24 @@ from affcli.analysis.paper import EXTENSION_OF_REACH, other_parts, papers_break,
 from affcli.analysis.reproduction import Reproduction
 from affcli.core.records import LearningRunInfo, SessionInfo, TrialInfo
 from affcli.core.results import BehaviorGroup
-from affcli.core.specs import Protocol
+from affcli.core.specs import Protocol, TrialSpec
 from affcli.core.trial import Outcome
+
+
+class Tried(typing.Protocol):
+    """A trial, as it is stored or done again."""
+
+    @property
+    def run_id(self) -> int:
+        """The learning run whose table it used."""
+
+    @property
+    def spec(self) -> TrialSpec:
+        """Which trial."""
+
+    @property
+    def outcome(self) -> Outcome | None:
+        """How it ended; None while running or when interrupted."""
 
 
 class SolvedBy(NamedTuple):
@@ -76,7 +93,7 @@ class Breaking:
     """One session in which a tool broke: the broken tool's trials and the whole one's.
 
     Args:
-        session, run, seed, tool, shape, sensor, planner: which.
+        session, run, seed, tool, shape, sensor, planner, task_set: which.
         papers: tool, shape, tasks, planner and the parts of learning are the paper's.
         broken, whole: counts of its trials.
     """
@@ -88,6 +105,7 @@ class Breaking:
     shape: str
     sensor: str
     planner: str
+    task_set: str
     papers: bool
     broken: ProtocolCounts
     whole: ProtocolCounts
@@ -114,11 +132,11 @@ class Overview:
     reproductions: Sequence[Reproduction]
 
 
-def goal_counts(results: Iterable[TrialInfo], runs: Iterable[LearningRunInfo]) -> list[GoalCounts]:
+def goal_counts(results: Iterable[Tried], runs: Iterable[LearningRunInfo]) -> list[GoalCounts]:
     """Count successes by learning run, tool, sensor, planner and task set.
 
     Args:
-        results: of ``solve``; those whose simulation failed count for nothing.
+        results: with whole tools; those whose simulation failed count for nothing.
         runs: the learning runs whose tables were used.
     """
     as_the_paper = {run.id for run in runs if not other_parts(run.spec)}
@@ -154,7 +172,7 @@ def breaking_of(
     first = adapting[0]
     return Breaking(
         *(session.id, results[0].run_id, session.spec.seed, first.tool, first.shape),
-        *(first.sensor, str(first.planner)),
+        *(first.sensor, str(first.planner), first.task_set),
         papers=not other_parts(session.spec) and all(map(papers_break, adapting)),
         broken=counts[Protocol.TOOL_ADAPTATION],
         whole=counts[Protocol.EXTENSION_OF_REACH],

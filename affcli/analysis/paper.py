@@ -79,6 +79,14 @@ def papers_successes(spec: TrialSpec) -> int | None:
     return EXTENSION_OF_REACH[spec.tool, spec.goal] if papers_cell(spec) else None
 
 
+def row_name(tool: str, planner: str, task_set: str) -> str:
+    """Return what trials with a tool stand under: the tool, and what of the rest is not the
+    paper's.
+    """
+    others = ((planner, PLANNER), (task_set, TASK_SET))
+    return ", ".join([tool, *(name for name, papers in others if name != papers)])
+
+
 def papers_breaking(spec: TrialSpec, learned: LearningSpec) -> bool:
     """Tell whether a trial with a broken tool, and the learning before, are the paper's (§7.2)."""
     return papers_break(spec) and not other_parts(learned)

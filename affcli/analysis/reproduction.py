@@ -41,8 +41,8 @@ class Reproduction:
     Args:
         session: which.
         robots: how many of its robots are saved.
-        cells: successes of 4 of each robot by the paper's (tool, goal); none when the robots
-            learned or chose otherwise than the paper's, or did none of its tasks.
+        cells: successes of 4 of each robot by the paper's (tool, goal), where it was tried; none
+            when the robots learned or chose otherwise than the paper's, or did none of its tasks.
         broken: successes of 16 of each robot with the paper's broken tool; none likewise.
         others: what the paper has not, by goal.
         failures: how often each kind of failure occurred, over all trials.
@@ -93,7 +93,11 @@ class Reproduction:
         return cls(
             session,
             robots,
-            {cell: _by_robot(solved[cell], robots) for cell in EXTENSION_OF_REACH if solved},
+            {
+                cell: _by_robot(solved[cell], robots)
+                for cell in EXTENSION_OF_REACH
+                if cell in solved
+            },
             _by_robot(broken, robots) if broken else (),
             {
                 kind: {goal: _solved(some, robots) for goal, some in goals.items()}
@@ -106,7 +110,9 @@ class Reproduction:
 
     @property
     def totals(self) -> list[int]:
-        """Successes of the paper's 80 of each robot; none without cells."""
+        """Successes of the paper's 80 of each robot; none unless each of its cells was tried."""
+        if len(self.cells) < len(EXTENSION_OF_REACH):
+            return []
         return [sum(column) for column in zip(*self.cells.values(), strict=True)]
 
 

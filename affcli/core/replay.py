@@ -8,7 +8,7 @@ from affcli.core.goal import Goal
 from affcli.core.observation import Observation
 from affcli.core.scene import Scene
 from affcli.core.specs import TrialSpec
-from affcli.core.trial import BabblingRecord, TrialEnd, TrialStep, Truth
+from affcli.core.trial import BabblingRecord, Outcome, TrialEnd, TrialStep, Truth
 from affcli.core.workspace import Workspace
 
 
@@ -88,6 +88,11 @@ class Replay:
     steps: tuple[ReplayedStep, ...]
     end: TrialEnd | None
     differences: tuple[Difference, ...]
+
+    @property
+    def outcome(self) -> Outcome | None:
+        """How it ended; None when the record does not say."""
+        return None if self.end is None else self.end.outcome
 
 
 @dataclass(frozen=True, slots=True)

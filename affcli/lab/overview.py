@@ -27,12 +27,13 @@ def reproduction_of(store: Store, session_id: int, robots: int) -> Reproduction:
 def overview_of(store: Store) -> Overview:
     """Return what the database holds: learned tools, trials, finished reproductions."""
     runs = store.learning.runs()
-    latest: dict[tuple[object, ...], Breaking] = {}
+    latest: dict[tuple[object, ...], Breaking] = {}  # of the same one done again, the last
     for session in store.sessions.all("break-tool"):
         losses = {protocol: store.results.losses(session.id, protocol) for protocol in Protocol}
         one = breaking_of(session, store.trials.trials(session_id=session.id), losses)
         if one is not None:
-            latest[one.run, one.seed, one.tool, one.shape, one.sensor, one.planner] = one
+            which = (one.run, one.seed, one.tool, one.shape, one.sensor)
+            latest[*which, one.planner, one.task_set] = one
     counted = [s.id for s in store.sessions.all("solve")] + [b.session for b in latest.values()]
     failures, trials = failures_in(store.results.outcome_counts(counted))
     return Overview(

@@ -1,7 +1,7 @@
 """Our results, read for the figure that shows them beside the paper's (§7)."""
 
 from affcli.analysis.comparison import Results, results_of_many, results_of_single
-from affcli.analysis.paper import TOOLS, other_parts
+from affcli.analysis.paper import other_parts
 from affcli.errors import UsageError
 from affcli.lab.overview import reproduction_of
 from affcli.lab.sessions import finished_session
@@ -11,8 +11,9 @@ from affcli.store import Store
 def results_in(store: Store, session: int | None) -> Results:
     """Return the results of a finished reproduction; without one, those of single robots.
 
-    Choice: single robots are the latest finished learning runs of the tools. Of each start the
-    latest ``affcli solve`` counts, and the latest 16 trials with the broken T-hook.
+    Choice: single robots are, for each tool, the latest finished learning run whose parts but for
+    the tool are the paper's. Of each start the latest ``affcli solve`` counts, and the latest 16
+    trials with the broken T-hook.
 
     Args:
         store: open.
@@ -24,8 +25,9 @@ def results_in(store: Store, session: int | None) -> Results:
     found = finished_session(store, session, ["reproduce"])
     if found is not None:
         return results_of_many(reproduction_of(store, found.id, found.spec.robots))
-    runs = [run for run in map(store.learning.latest, TOOLS) if run is not None]
-    own = {run.id for run in runs if not other_parts(run.spec)}
+    done = [run for run in store.learning.runs(status="done") if not other_parts(run.spec)]
+    latest = {run.spec.tool: run.id for run in done}
+    own = set(latest.values())
     solving, breaking = (
         [trial for trial in store.trials.trials(kind=kind) if trial.run_id in own]
         for kind in ("solve", "break-tool")

@@ -8,7 +8,7 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from affcli.analysis.overview import Breaking, Overview, ProtocolCounts
-from affcli.analysis.paper import BROKEN, PLANNER
+from affcli.analysis.paper import BROKEN, PLANNER, TASK_SET
 from affcli.report.learning import groups_json, groups_table, learned_table, run_json
 from affcli.report.reproduction import failures_table, reproduction_json, reproduction_tables
 from affcli.report.sheet import Sheet
@@ -37,24 +37,30 @@ def overview_tables(overview: Overview) -> list[RenderableType]:
 
 def _breakings_table(breakings: Sequence[Breaking]) -> Sheet:
     """Return the broken-tool sessions."""
-    planner = ("planner",) if {one.planner for one in breakings} != {PLANNER} else ()
+    named = {
+        "planner": [one.planner for one in breakings],
+        "tasks": [one.task_set for one in breakings],
+    }
+    usual = {"planner": PLANNER, "tasks": TASK_SET}
+    more = {name: values for name, values in named.items() if set(values) != {usual[name]}}
     papers = [one for one in breakings if one.papers]
-    beside = f"; paper, {papers[0].tool} that became {papers[0].shape}: " if papers else ""
+    by = "".join(f", {usual[name]}" for name in more)
+    beside = f"; paper, {papers[0].tool} that became {papers[0].shape}{by}: " if papers else ""
     which = ("run", "tool", "became", "sensor")
     table = Sheet(
-        (*which, *planner, "broken", "whole", "tries on lost", "excluded"),
+        (*which, *more, "broken", "whole", "tries on lost", "excluded"),
         title="Tools that broke",
         caption="solved (mean steps of the solved)"
         + (f"{beside}{BROKEN} of 16 both" if papers else ""),
-        left=("tool", "became", "sensor", "planner"),
+        left=("tool", "became", "sensor", *more),
     )
-    for breaking in breakings:
+    for number, breaking in enumerate(breakings):
         table.add(
             str(breaking.run),
             breaking.tool,
             breaking.shape,
             breaking.sensor,
-            *(breaking.planner for _ in planner),
+            *(values[number] for values in more.values()),
             _solved(breaking.broken),
             _solved(breaking.whole),
             str(breaking.broken.tries_on_lost),

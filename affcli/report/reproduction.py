@@ -12,7 +12,6 @@ from affcli.analysis.paper import (
     GOALS,
     PLANNER,
     TASK_SET,
-    TOOLS,
     TOTAL,
     TRIALS,
     other_parts,
@@ -40,7 +39,7 @@ def reproduction_json(result: Reproduction) -> dict[str, Any]:
             }
             for (tool, goal), mine in result.cells.items()
         ],
-        "total": _against(result.totals, TOTAL) if result.cells else None,
+        "total": _against(result.totals, TOTAL) if result.totals else None,
         "broken": _against(result.broken, BROKEN) if result.broken else None,
         "others": [
             {**kind._asdict(), "goal": goal, "trials": solved.tried, **_spread(solved.counts)}
@@ -73,7 +72,7 @@ def reproduction_tables(result: Reproduction) -> list[Sheet]:
     """Return the paper's table with ours in its cells, the totals, other trials, the failures."""
     return [
         *([_cells_table(result)] if result.cells else []),
-        *([_totals_table(result)] if result.cells or result.broken else []),
+        *([_totals_table(result)] if result.totals or result.broken else []),
         *([_others_table(result)] if result.others else []),
         failures_table(result.failures, result.trials),
     ]
@@ -88,14 +87,15 @@ def _cells_table(result: Reproduction) -> Sheet:
         caption=f"successes of 4 starts; {_note(result.robots)}\n{_session(result)}",
         left=columns,
     )
-    for tool in TOOLS:
-        cells = (
-            _marked(f"{paper}|{_cell(counts)}", counts, paper)
-            for goal in GOALS
-            for paper, counts in [(EXTENSION_OF_REACH[tool, goal], result.cells[tool, goal])]
-        )
-        table.add(tool, *cells)
+    for tool in dict.fromkeys(tool for tool, _ in result.cells):
+        table.add(tool, *(_cell_beside(result, tool, goal) for goal in GOALS))
     return table
+
+
+def _cell_beside(result: Reproduction, tool: str, goal: str) -> Text:
+    """Return the paper's count and ours, - for ours where nothing was tried."""
+    paper, counts = EXTENSION_OF_REACH[tool, goal], result.cells.get((tool, goal))
+    return _marked(f"{paper}|{_cell(counts)}", counts, paper) if counts else Text(f"{paper}|-")
 
 
 def _session(result: Reproduction) -> str:

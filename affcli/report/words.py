@@ -8,6 +8,7 @@ from affcli.core.behavior import BehaviorCall
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.choice import Reason, Reasons
 from affcli.core.geometry import direction_degrees
+from affcli.core.identity import shown
 from affcli.core.observation import Movement
 from affcli.core.specs import LearningSpec, SessionSpec, TrialSpec
 from affcli.core.tool import Tool
@@ -93,13 +94,17 @@ def reasons_words(reasons: Reasons, *, chosen: bool = True) -> str:
 
 
 def settings_words(settings: str) -> str:
-    """Return how settings differ from the first defaults: ``defaults``, or each one.
+    """Return how settings differ from the first defaults: ``defaults``, or each one, exactly.
+
+    What no setting of this affcli can be, such as a list, is shown as JSON.
 
     Args:
         settings: as a spec keeps them.
     """
     values = json.loads(settings).items()
-    words = (f"{k} = {v if isinstance(v, str) else format(v, 'g')}" for k, v in values)
+    words = (
+        f"{k} = {shown(v) if isinstance(v, str | float) else json.dumps(v)}" for k, v in values
+    )
     return one_line(", ".join(words), 2_000) or "defaults"
 
 

@@ -1,11 +1,14 @@
 """What figures of testing trials gather, against the stored records counted one by one."""
 
 import sys
+from dataclasses import replace
 from statistics import fmean
 
 import pytest
 
+from affcli.analysis.paper import other_parts
 from affcli.config import Settings, settings_with
+from affcli.core.behavior import GRASP, BehaviorCall
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome
@@ -13,10 +16,11 @@ from affcli.errors import UsageError
 from affcli.lab.adaptation import adaptation_in
 from affcli.lab.drawing import require_figures
 from affcli.lab.film_strips import film_of
-from affcli.lab.overview import reproduction_of
+from affcli.lab.overview import overview_of, reproduction_of
 from affcli.lab.results import results_in
 from affcli.lab.sessions import finished_session
 from affcli.report.figure_titles import results_title
+from affcli.report.overview import overview_tables
 from affcli.store import Store
 from tests.lab.quick import (
     IMPATIENT,
@@ -25,12 +29,14 @@ from tests.lab.quick import (
     altered,
     breaking,
     counted,
+    now,
     reproducing,
     solving,
     spec_of,
     stored,
     taken,
 )
+from tests.report.drawn import drawn
 
 UNHURRIED = settings_with({"motion": {"hold": 10.0}, "trial": {"max_steps": 12}}, "a test")
 """An hour holds some hundred and fifty behaviors: enough to try in vain what was lost."""
@@ -183,6 +189,38 @@ def test_results_of_single_robots(store: Store, run: LearningRunInfo) -> None:
     assert results_title(results) == f"one robot a tool: run {again.id} (noisy)"
     assert results.broken is not None
     assert results.total is None
+
+
+def test_a_later_run_with_other_parts_does_not_hide_the_paper_s(
+    store: Store, run: LearningRunInfo
+) -> None:
+    counted(solving(store, run, "1", "1"))
+    held = replace(spec_of("t-hook", 60), binding=BehaviorCall.of(GRASP, {"grasp_point": 2.0}))
+    other = store.learning.begin(held, {}, now())
+    store.learning.append(other.id, 0, (), None, 0.0, done=True, now=now())
+    latest = store.learning.latest("t-hook")
+    assert latest is not None
+    assert (latest.id, sorted(other_parts(latest.spec))) == (other.id, ["binding"])
+    results = results_in(store, None)
+    assert results.runs == {"noisy": [run.id]}
+    assert results.cells["t-hook", "1"].tried == 1
+
+
+def test_a_break_at_other_tasks_leaves_the_paper_s_in_the_report(
+    store: Store, run: LearningRunInfo
+) -> None:
+    """Of the same one done again, the last counts."""
+    for _ in range(3):
+        counted(breaking(store, run, "l-hook", 0))
+    altered(store.path, "UPDATE trial SET task_set = 'far-corners' WHERE session_id = 3")
+    breakings = overview_of(store).breakings
+    assert [(one.session, one.task_set, one.papers) for one in breakings] == [
+        (2, "extension-of-reach", True),
+        (3, "far-corners", False),
+    ]
+    words = drawn(overview_tables(overview_of(store)), 200).split("Tools that broke")[1]
+    assert "paper, t-hook that became l-hook, extension-of-reach: 16 of 16" in words
+    assert "far-corners" in words
 
 
 def test_without_matplotlib_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -330,12 +330,12 @@ OVERVIEW = Overview(
     ],
     breakings=[
         Breaking(
-            *(2, 1, 0, "t-hook", "l-hook", "camera", "nested-query", True),
+            *(2, 1, 0, "t-hook", "l-hook", "camera", "nested-query", TASK_SET, True),
             ProtocolCounts(16, 13, 5.25, 31, 9),
             ProtocolCounts(16, 16, 4.0, 0, 2),
         ),
         Breaking(
-            *(3, 7, 1, "t-stick", "stick", "noisy", "nested-query", False),
+            *(3, 7, 1, "t-stick", "stick", "noisy", "nested-query", TASK_SET, False),
             ProtocolCounts(16, 0, None, 16, 4),
             ProtocolCounts(16, 10, 2.0, 0, 0),
         ),

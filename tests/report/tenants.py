@@ -106,7 +106,7 @@ OVERVIEW = Overview(
     solved=goal_counts(results(), RUNS),
     breakings=[
         Breaking(
-            *(2, 6, 0, "rake", "bare handle", "noisy", "lookahead:depth=2", False),
+            *(2, 6, 0, "rake", "bare handle", "noisy", "lookahead:depth=2", TASK_SET, False),
             ProtocolCounts(20, 13, 5.25, 31, 9),
             ProtocolCounts(20, 16, 4.0, 0, 2),
         )

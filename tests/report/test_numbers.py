@@ -1,6 +1,7 @@
 """What the reports say as JSON, against hand-made records whose numbers are known."""
 
 import json
+from dataclasses import replace
 
 import pytest
 
@@ -10,10 +11,19 @@ from affcli.analysis.paper import EXTENSION_OF_REACH, GOALS, TOOLS, TOTAL
 from affcli.core.geometry import Point
 from affcli.report.breaking import broken_json
 from affcli.report.learning import groups_json, run_json, summary
-from affcli.report.overview import overview_json
+from affcli.report.overview import overview_json, overview_tables
 from affcli.report.reproduction import reproduction_json
-from affcli.report.words import clock, whole_degrees
-from tests.report.hand_made import BROKEN, FOUR_ROBOTS, GROUPS, OVERVIEW, RUNS, WHOLE, learned_run
+from affcli.report.words import clock, settings_words, whole_degrees
+from tests.report.hand_made import (
+    BROKEN,
+    FOUR_ROBOTS,
+    GROUPS,
+    OVERVIEW,
+    RUNS,
+    WHOLE,
+    learned_run,
+    session_of,
+)
 
 
 def test_the_papers_table() -> None:
@@ -146,3 +156,25 @@ def test_the_hand_made_rows_are_what_they_say() -> None:
     row = BROKEN[0].steps[0].record.row
     assert row.start.wrist_to_object == Point(-5.0, 8.0)
     assert (row.expected_movement.dx, row.expected_movement.dy) == (-4.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ("{}", "defaults"),
+        ('{"a":0.123456789,"b":0.45,"c":1e-07}', "a = 0.123456789, b = 0.45, c = 1e-07"),
+        ('{"a":12345678,"b":3.0,"c":"camera"}', "a = 12345678, b = 3, c = camera"),
+        ('{"a":[1,null],"b":null,"c":true,"d":{"e":0.5}}',
+         'a = [1, null], b = null, c = true, d = {"e": 0.5}'),
+        ('{"a":[1e999],"b":1e999,"c":1' + 400 * "0" + "}",
+         "a = [Infinity], b = inf, c = 1" + 400 * "0"),
+    ],
+)  # fmt: skip
+def test_settings_are_exact_whatever_a_database_holds(settings: str, words: str) -> None:
+    assert settings_words(settings) == words
+    run = learned_run(1, replace(RUNS[0].spec, settings=settings))
+    kept = replace(OVERVIEW, learned=[(run, ())])
+    assert overview_json(kept)["learned"][0]["settings"] == words
+    assert overview_tables(kept)
+    again = replace(FOUR_ROBOTS, session=session_of(5, settings=settings))
+    assert reproduction_json(again)["settings"] == words

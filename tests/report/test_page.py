@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from affcli.analysis.paper import EXTENSION_OF_REACH
 from affcli.core.affordance import Affordance
 from affcli.core.replay import Difference, Replay
+from affcli.core.task import Task
 from affcli.core.tool import ToolName
 from affcli.core.trial import Outcome
 from affcli.report.page import answers
@@ -239,3 +240,26 @@ def test_how_trials_failed_is_said_in_words() -> None:
     assert "no row left" in failures
     assert "every row was excluded, or asks for a place out of the arm&#39;s reach" in failures
     assert "<td>1</td><td>25.0 %</td>" in failures
+
+
+def test_one_robot_s_trials_at_other_tasks_stand_in_a_row_of_their_own() -> None:
+    """The paper has nothing beside them, though their goals have the same names."""
+    other = Task("far-corners", WHOLE_TRIAL.spec.task.goal, "1", WHOLE_TRIAL.spec.task.start)
+    trials = [
+        WHOLE_TRIAL,
+        replay(replace(spec(1), task=other), Outcome.STEP_LIMIT, number=5),
+        replay(replace(spec(2), task=other), Outcome.INVALID, number=6),
+        replay(replace(spec(3), task=other), None, number=7),
+    ]
+    page = render(content(replays=trials, broken=[]), COMMAND)
+    single = page.split('aria-label="One robot"')[1].split("</table>")[0]
+    assert re.findall(r'row">([^<]+)</th><td>(\d/\d)(.*?)</td>', single) == [
+        ("t-hook", "1/1", ' <span class="quiet">paper&nbsp;4</span>'),
+        ("t-hook, far-corners", "0/1", ""),
+    ]
+    assert [trial["tasks"] for trial in data_in(page)["trials"]] == [
+        "extension-of-reach",
+        *["far-corners"] * 3,
+    ]
+    assert page.count("<td>far-corners</td>") == 3
+    assert '<th scope="col">tasks</th>' not in render(content(), COMMAND)

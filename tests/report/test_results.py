@@ -213,13 +213,39 @@ def test_any_number_of_goals_and_tools_stands_in_rows_that_fit() -> None:
     assert all(box.width > 0.6 * figure.dpi < 1.2 * box.height for box in boxes[:-2])
 
 
-def test_of_each_start_the_latest_trial_counts_and_only_the_paper_s() -> None:
+@pytest.mark.parametrize("robots", [2, 20])
+def test_each_panel_is_out_of_what_was_tried_in_it(robots: int) -> None:
+    """A goal of many starts does not stretch the others; a row out of fewer says so."""
+    cells = {
+        ("stick", "1"): Beside(0, [1] * robots, 4),
+        ("rake", "1"): Beside(None, [2] * robots, 3),
+        ("stick", "5"): Beside(None, [5] * robots, 16),
+        ("rake", "5"): Beside(None, [4] * robots, 4),
+        ("rake", "6"): Beside(None, [1] * robots, 2),
+        ("stick", "7"): Beside(2, [], 0),
+    }
+    figure = results_figure(Results(session_of(5), robots, {}, cells, None, None))
+    panels = {axes.get_title(): axes for axes in figure.axes}
+    labels = {goal: panels[f"goal {goal}"].get_xlabel() for goal in "1567"}
+    of = {"1": 4, "5": 16, "6": 2, "7": 4}
+    assert labels == {goal: f"successes of {most}" for goal, most in of.items()}
+    said = {goal: [text.get_text() for text in panels[f"goal {goal}"].texts] for goal in "1567"}
+    assert said == {"1": ["of 3"], "5": ["of 4"], "6": [], "7": []}
+    assert panels["goal 1"].get_xlim()[1] < 5.0
+    assert panels["goal 5"].get_xlim()[1] > 16.0
+
+
+def test_of_each_start_the_latest_trial_counts_and_only_the_paper_s_are_compared() -> None:
     again = [
         result("stick", "2", 1, solved=False, run_id=7),
         result("stick", "2", 1, run_id=8, sensor="camera"),
         result("stick", "2", 2, run_id=8, outcome=Outcome.INVALID),
+    ]
+    others = [
         result("stick", "2", 3, planner="nested-query:share=0.05"),
+        result("stick", "5", 1, solved=False),
         result("stick", "5", 1),
+        result("stick", "5", 2, solved=False),
         result("stick", "2", 4, task_set="far-corners"),
         result("spoon", "2", 1),
     ]
@@ -227,4 +253,23 @@ def test_of_each_start_the_latest_trial_counts_and_only_the_paper_s() -> None:
     assert (found.cells["stick", "2"].counts, found.cells["stick", "2"].tried) == ([1], 1)
     assert sum(cell.tried for cell in found.cells.values()) == 1
     assert results_title(found) == "one robot a tool: run 8 (camera)"
-    assert results_of_single(again[3:], BROKEN) is None
+    alone = single(others, BROKEN)
+    assert alone.cells == {
+        ("stick, nested-query:share=0.05", "2"): Beside(None, [1], 1),
+        ("stick", "5"): Beside(None, [1], 2),
+        ("stick, far-corners", "2"): Beside(None, [1], 1),
+        ("spoon", "2"): Beside(None, [1], 1),
+    }
+    assert alone.total == Beside(None, [4], 5)
+    both = single([*others, *again], BROKEN)
+    assert both.cells == {**found.cells, **alone.cells}
+    assert both.total is None
+    assert single([*others, *SOLVED], BROKEN).total == Beside(TOTAL, [80], 80)
+    figure = results_figure(both)
+    assert figure.axes[1].get_xlabel() == "successes of 4"
+    assert [label.get_text() for label in figure.axes[0].get_yticklabels()][-3:] == [
+        *("stick, nested-query:share=0.05", "stick, far-corners", "spoon"),
+    ]
+    figure.draw_without_rendering()
+    assert all(axes.get_window_extent().width > 0.4 * figure.dpi for axes in figure.axes)
+    assert results_of_single(again[2:], BROKEN) is None

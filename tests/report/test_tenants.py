@@ -9,9 +9,10 @@ from syrupy.assertion import SnapshotAssertion
 
 from affcli.analysis.comparison import results_of_many
 from affcli.analysis.paper import EXTENSION_OF_REACH, GOALS, TOOLS, other_parts
-from affcli.analysis.reproduction import TrialKind
+from affcli.analysis.reproduction import Reproduction, TrialKind
 from affcli.core.specs import Protocol
 from affcli.report.breaking import broken_json, broken_tables
+from affcli.report.figures.results import results_figure
 from affcli.report.learning import learned_table, run_json
 from affcli.report.overview import overview_json, overview_tables
 from affcli.report.page.answers import ended_trials, forgot, reproduced
@@ -22,7 +23,7 @@ from affcli.report.table_views import run_shown
 from affcli.report.trials import explain_trial, solve_table, trial_json
 from tests.report import tenants
 from tests.report.drawn import drawn
-from tests.report.hand_made import spec, stored_row, tried
+from tests.report.hand_made import session_of, spec, stored_row, tried
 from tests.report.hand_made_page import WHOLE_TRIAL, data_in
 from tests.report.tenants import CONTENT, LEARNED, OTHERWISE, OVERVIEW, REPRODUCTION, RUNS
 
@@ -87,6 +88,39 @@ def test_comparisons_with_the_paper_sum_only_what_the_paper_has() -> None:
         goal: [3, 4, 3] for goal in GOALS
     }
     assert "69.0 of the 80 trials" in reproduced(REPRODUCTION)
+
+
+def test_cells_that_no_robot_tried_are_neither_0_nor_summed() -> None:
+    """A total stands beside the paper's 69 of 80 only when there are 80."""
+    some = [one for one in tenants.counts() if (one.tool, one.goal) != ("stick", "2")]
+    some = [one for one in some if one.tool not in ("l-stick", "rake")]
+    result = Reproduction.of(session_of(5, robots=3), 3, some, tenants.OUTCOMES, 7)
+    assert set(result.cells) == {
+        cell for cell in EXTENSION_OF_REACH if cell != ("stick", "2") and cell[0] != "l-stick"
+    }
+    assert result.totals == []
+    value = reproduction_json(result)
+    assert (len(value["cells"]), value["total"], value["broken"]["mean"]) == (15, None, 16.0)
+    results = results_of_many(result)
+    assert results.total is None
+    assert ("stick", "2") not in results.cells
+    shown = drawn(reproduction_tables(result), 100)
+    assert "2|-" in shown
+    assert "of 80" not in shown
+    assert reproduced(result) == (
+        "3 robots are too few to say. Not all of the paper's 80 trials were tried. With the broken "
+        "tool 3 robots solve 16.0 of 16, the paper's 16."
+    )
+    assert reproduced(replace(result, robots=40)).startswith("As far as it was tried: in 15 of 15")
+    titles = [axes.get_title() for axes in results_figure(results).axes]
+    assert titles[:4] == ["goal 1", "goal 2", "goal 3", "goal 4"]
+    page = render(replace(CONTENT, reproduction=result), COMMAND)
+    table = page.split("Results beside the paper")[1].split("</table>", maxsplit=1)[0]
+    stick = table.split(">stick</th>")[1].split("</tr>", maxsplit=1)[0]
+    assert re.findall(r"<td[^>]*>(-|<b>[\d.]+)", stick) == ["<b>0.0", "-", "<b>4.0", "<b>4.0"]
+    assert "of 80</th>" not in page
+    page = render(replace(CONTENT, reproduction=replace(result, broken=())), COMMAND)
+    assert 'aria-label="All trials"' not in page
 
 
 def test_robots_that_choose_or_hold_otherwise_are_not_compared() -> None:
@@ -190,6 +224,11 @@ def test_the_page_names_planners_and_what_is_not_drawn_or_done_again(page: str) 
     assert "Trial 35 left out: another world" in page
     assert {one["planner"] for one in data_in(page)["trials"]} == {"lookahead:depth=2"}
     assert data_in(page)["trials"][1]["left"] == ["140 imagined", "expected distance 3.25"]
+
+
+def test_the_page_says_of_tools_only_what_it_counted(page: str) -> None:
+    """Which tool pulls is a matter of the repertoire; this robot had no stick."""
+    assert "stick" not in page.split("How trials failed")[1].split("</section>", maxsplit=1)[0]
 
 
 def test_an_unknown_tool_is_named_and_the_rest_is_drawn() -> None:

@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from matplotlib.artist import Artist
@@ -17,6 +17,7 @@ from affcli.report.figure_titles import results_note, results_title
 from affcli.report.figures.canvas import INK, PALE, SKY, TWO_COLUMNS, VERMILION, canvas, head
 from affcli.report.figures.key import draw_key
 from affcli.report.figures.maps import columns_for
+from affcli.report.words import in_order
 
 MOST_BESIDE = 4
 """Goals in a row of the page."""
@@ -36,9 +37,8 @@ PAPER: dict[str, Any] = {
 
 def results_figure(results: Results) -> Figure:
     """Draw the results: a panel a goal with a row a tool; total and broken tool beside them."""
-    goals = list(dict.fromkeys(goal for _, goal in results.cells))
+    goals = in_order(goal for _, goal in results.cells)
     tools = list(dict.fromkeys(tool for tool, _ in results.cells))
-    most = max(STARTS, *(cell.tried for cell in results.cells.values()))
     across = columns_for(len(goals), MOST_BESIDE)
     rows = math.ceil(len(goals) / across)
     with canvas(TWO_COLUMNS, 0.85 + rows * (0.5 + 0.2 * len(tools))) as figure:
@@ -46,7 +46,9 @@ def results_figure(results: Results) -> Figure:
         for number, goal in enumerate(goals):
             row, column = divmod(number, across)
             axes = figure.add_subplot(grid[2 * row : 2 * row + 2, column])
-            _draw_rows(axes, {tool: results.cells.get((tool, goal), UNTRIED) for tool in tools})
+            cells = {tool: results.cells.get((tool, goal), UNTRIED) for tool in tools}
+            most = _most_tried(cells.values())
+            _draw_rows(axes, cells, most)
             axes.set_title(f"goal {goal}")
             axes.set_xlabel(f"successes of {most}")
             axes.xaxis.set_major_locator(MaxNLocator(5, integer=True))
@@ -61,6 +63,14 @@ def results_figure(results: Results) -> Figure:
     return figure
 
 
+def _most_tried(cells: Iterable[Beside]) -> int:
+    """Return out of how many the cells of a panel are: the paper's are of 4, though none be tried.
+
+    Ours that are out of fewer say so.
+    """
+    return max(max(cell.tried, 0 if cell.paper is None else STARTS) for cell in cells)
+
+
 def _draw_sum(axes: Axes, name: str, beside: Beside | None) -> None:
     """Draw one row over many trials, or say that they were not all done."""
     axes.set_title(name)
@@ -71,14 +81,14 @@ def _draw_sum(axes: Axes, name: str, beside: Beside | None) -> None:
         axes.spines["bottom"].set_visible(False)
         axes.text(0.5, 0.5, "not all done", transform=axes.transAxes, ha="center", va="center")
         return
-    _draw_rows(axes, {"": beside})
+    _draw_rows(axes, {"": beside}, beside.tried)
     axes.set_xlabel(f"successes of {beside.tried}")
     axes.xaxis.set_major_locator(MaxNLocator(4, integer=True))
     axes.set_xlim(*_limits(beside))
 
 
-def _draw_rows(axes: Axes, rows: Mapping[str, Beside]) -> None:
-    """Draw a row for each name, the first on top."""
+def _draw_rows(axes: Axes, rows: Mapping[str, Beside], most: int) -> None:
+    """Draw a row for each name, the first on top; it says so where it is not out of `most`."""
     axes.set_yticks(range(len(rows)), list(rows))
     axes.set_ylim(len(rows) - 0.45, -0.65)
     axes.tick_params(axis="y", length=0.0)
@@ -86,6 +96,10 @@ def _draw_rows(axes: Axes, rows: Mapping[str, Beside]) -> None:
     axes.set_axisbelow(True)
     for y, beside in enumerate(rows.values()):
         _draw_ours(axes, y, beside)
+        if beside.counts and beside.tried != most:
+            words, spread = f"of {beside.tried}", beside.spread
+            at = (beside.mean if spread is None else spread.high, y)
+            axes.annotate(words, at, (4, 0), textcoords="offset points", va="center")
         if beside.paper is not None:
             fill = "white" if beside.outside else VERMILION
             axes.plot([beside.paper], [y - RAISED], **PAPER, markerfacecolor=fill, zorder=5)
@@ -114,9 +128,6 @@ def _draw_ours(axes: Axes, y: float, beside: Beside) -> None:
             axes.plot([count], [y], marker="o", markersize=size, color=SKY, zorder=3)
     if beside.counts:
         axes.plot([beside.mean], [y], marker="o", markersize=3.2, color=INK, zorder=4)
-        if beside.tried < STARTS:
-            words = f"of {beside.tried}"
-            axes.annotate(words, (beside.mean, y), (4, 0), textcoords="offset points", va="center")
 
 
 def _limits(beside: Beside) -> tuple[float, float]:

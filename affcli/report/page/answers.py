@@ -33,25 +33,12 @@ def reproduced(result: Reproduction) -> str:
     """Return whether the paper's table is reproduced by many robots."""
     if not result.cells:
         return "These robots did nothing that the paper has beside it; what they did stands below."
-    total = Spread.of(result.totals)
     outside = [
         f"{tool} at goal {goal}"
         for (tool, goal), counts in result.cells.items()
         if not Spread.of(counts).holds(EXTENSION_OF_REACH[tool, goal])
     ]
-    ci = total.mean_ci
-    mean = "" if ci is None else f" (95 % interval of the mean {ci[0]:.1f} to {ci[1]:.1f})"
-    broken = (
-        f"; with the broken tool {Spread.of(result.broken).mean:.1f} of {BROKEN_TRIALS}, the "
-        f"paper's {BROKEN}"
-        if result.broken
-        else ""
-    )
-    numbers = (
-        f"{many(result.robots, 'robot')} solve{'s' if result.robots == 1 else ''} "
-        f"{total.mean:.1f} of the {TRIALS} trials on average{mean}, the paper's robot "
-        f"{TOTAL}{broken}."
-    )
+    numbers = _sums(result)
     if result.robots < ENOUGH_ROBOTS:
         few = f"{result.robots} robot{'s are' if result.robots != 1 else ' is'} too few to say."
         return f"{few} {numbers}"
@@ -61,7 +48,28 @@ def reproduced(result: Reproduction) -> str:
     inside = f"in {cells - len(outside)} of {cells} cells the paper's count lies within the central"
     if outside:
         return f"Not wholly: {inside} 95 % of robots; not so: {', '.join(outside)}. {numbers}"
-    return f"Yes: {inside} 95 % of robots. {numbers}"
+    yes = "Yes" if result.totals else "As far as it was tried"
+    return f"{yes}: {inside} 95 % of robots. {numbers}"
+
+
+def _sums(result: Reproduction) -> str:
+    """Return the total and the broken tool's successes in words."""
+    robots = f"{many(result.robots, 'robot')} solve{'s' if result.robots == 1 else ''}"
+    broken = (
+        f"{Spread.of(result.broken).mean:.1f} of {BROKEN_TRIALS}, the paper's {BROKEN}"
+        if result.broken
+        else ""
+    )
+    if not result.totals:
+        words = f"Not all of the paper's {TRIALS} trials were tried."
+        return f"{words} With the broken tool {robots} {broken}." if broken else words
+    total = Spread.of(result.totals)
+    ci = total.mean_ci
+    mean = "" if ci is None else f" (95 % interval of the mean {ci[0]:.1f} to {ci[1]:.1f})"
+    return (
+        f"{robots} {total.mean:.1f} of the {TRIALS} trials on average{mean}, the paper's robot "
+        f"{TOTAL}{f'; with the broken tool {broken}' if broken else ''}."
+    )
 
 
 def solved_by_one(trials: Sequence[Replay]) -> str:

@@ -86,6 +86,7 @@ def _which(spec: TrialSpec) -> dict[str, str]:
         "tool": spec.tool,
         "shape": spec.shape,
         "planner": str(spec.planner),
+        "tasks": spec.task_set,
         "goal": spec.goal,
         "start": spec.start,
     }

@@ -68,10 +68,11 @@
       if (shown && value !== null) shown.textContent = words(name, value);
     }
     const planner = trial.planner === "nested-query" ? "" : `, planner ${trial.planner}`;
+    const tasks = trial.tasks === "extension-of-reach" ? "" : `, tasks ${trial.tasks}`;
     const broken = trial.shape === trial.tool ? "" : `, truly the ${trial.shape} (nobody told the robot)`;
     const same = trial.equal ? "" : " This replay DIFFERS from its record.";
     byId("which").textContent =
-      `Trial ${trial.id}: ${trial.tool}${broken}, goal ${trial.goal}, start ${trial.start}${planner}: ` +
+      `Trial ${trial.id}: ${trial.tool}${broken}, goal ${trial.goal}, start ${trial.start}${tasks}${planner}: ` +
       `${trial.outcome} after ${steps(trial.steps.length)}.${same}`;
     byId("scrub").max = Math.max(0, film.x.length - 1);
     byId("player").hidden = false;

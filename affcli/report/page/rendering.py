@@ -9,13 +9,12 @@ from markupsafe import Markup
 
 from affcli import __version__
 from affcli.analysis.breaking import missing_side
+from affcli.analysis.overview import goal_counts
 from affcli.analysis.paper import (
     BROKEN_TRIALS,
     GOALS,
-    PLANNER,
     TRIALS,
-    other_parts,
-    papers_successes,
+    row_name,
 )
 from affcli.analysis.statistics import ENOUGH_ROBOTS
 from affcli.core.specs import Protocol
@@ -73,6 +72,7 @@ def render(content: Content, command: str) -> str:
         tools=[_tool_section(learned) for learned in content.tools],
         trials=trials,
         planners=len({trial["planner"] for trial in trials}) > 1,
+        task_sets=len({trial["tasks"] for trial in trials}) > 1,
         same=answers.same(content),
         left_out=answers.left_out(content),
         data=plain(
@@ -121,9 +121,9 @@ def _results(content: Content) -> dict[str, Any]:
             "failed_of": tried,
         }
     result = reproduction_json(content.reproduction)
-    by_tool: dict[str, list[dict[str, Any]]] = defaultdict(list)
+    by_tool: dict[str, dict[str, dict[str, Any]]] = defaultdict(dict)
     for cell in result["cells"]:
-        by_tool[cell["tool"]].append(cell)
+        by_tool[cell["tool"]][cell["goal"]] = cell
     return {
         **shared,
         "result": result,
@@ -137,23 +137,22 @@ def _results(content: Content) -> dict[str, Any]:
 
 
 def _single(content: Content) -> tuple[list[str], list[tuple[str, list[dict[str, Any]]]]]:
-    """Return the goals, and for each tool what one robot solved and tried of each of them."""
-    ended = [
-        replay
-        for replay in content.replays
-        if replay.end is not None and replay.spec.protocol is Protocol.EXTENSION_OF_REACH
-    ]
-    goals = in_order(replay.spec.goal for replay in ended)
-    as_the_paper = {one.run.id for one in content.tools if not other_parts(one.run.spec)}
-    rows: dict[str, dict[str, dict[str, Any]]] = {}
-    for replay in ended:
-        spec = replay.spec
-        usual = str(spec.planner) == PLANNER
-        cells = rows.setdefault(spec.tool if usual else f"{spec.tool}, {spec.planner}", {})
-        cell = cells.setdefault(spec.goal, {"solved": 0, "tried": 0})
-        cell["solved"] += replay.end is not None and replay.end.outcome is Outcome.SOLVED
-        cell["tried"] += 1
-        cell["paper"] = papers_successes(spec) if replay.run_id in as_the_paper else None
+    """Return the goals, and for each row what one robot solved and tried of each of them.
+
+    A row is a tool, and what is not the usual of planner, tasks and, where it differs, sensor.
+    """
+    whole = [r for r in content.replays if r.spec.protocol is Protocol.EXTENSION_OF_REACH]
+    counts = goal_counts(whole, [learned.run for learned in content.tools])
+    sensors = {one.by.sensor for one in counts}
+    rows: dict[str, dict[str, dict[str, Any]]] = defaultdict(dict)
+    for one in counts:
+        by = one.by
+        name = row_name(by.tool, by.planner, by.task_set)
+        if len(sensors) > 1:
+            name += f", {by.sensor}"
+        for goal, (solved, tried) in one.goals.items():
+            rows[name][goal] = {"solved": solved, "tried": tried, "paper": one.paper(goal)}
+    goals = in_order(goal for cells in rows.values() for goal in cells)
     none = {"solved": 0, "tried": 0, "paper": None}
     return goals, [
         (name, [cells.get(goal, none) for goal in goals]) for name, cells in rows.items()
