@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from affcli.analysis.regions import parts_at
 from affcli.analysis.row_status import RowStatus, around_trial, compared, current
-from affcli.core.affordance import Affordance
+from affcli.core.affordance import PROBABILITY_THRESHOLD, Affordance
 from affcli.core.behavior import BehaviorCall
 from affcli.core.records import LearningRunInfo, StoredRow, StoredStep, TrialInfo
 from affcli.core.tool import Tool, ToolPart, hold_of
@@ -114,6 +114,7 @@ def trial_shown(
     stored: Sequence[StoredRow],
     steps: Sequence[StoredStep],
     excluded_before: Collection[int],
+    threshold: float,
     puck_radius: float,
 ) -> ShownTables:
     """Return the table that a trial started from, and what it left of it.
@@ -124,6 +125,7 @@ def trial_shown(
         stored: all its rows.
         steps: those of the trial.
         excluded_before: the rows that were excluded before it.
+        threshold: of its planner: a row of this replication probability or below is excluded.
         puck_radius: of the attractor (in).
     """
     tried = {step.affordance_id for step in steps}
@@ -142,9 +144,10 @@ def trial_shown(
         f"trial {trial.id}, {tool.name}{became}{so_far}: "
         f"{after.count(RowStatus.KEPT)} rows kept, {after.count(RowStatus.LOST)} lost"
     )
+    limit = "1/2" if threshold == PROBABILITY_THRESHOLD else f"{threshold:g}"
     key = {
         RowStatus.KEPT: "kept",
-        RowStatus.LOST: "lost: its probability fell to 1/2 or below in the trial",
+        RowStatus.LOST: f"lost: its probability fell to {limit} or below in the trial",
         RowStatus.EXCLUDED: "excluded before the trial",
     }
     return _shown(title, run, (before, after), key, tool, left)

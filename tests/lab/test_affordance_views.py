@@ -171,3 +171,18 @@ def test_an_interrupted_trial_shows_what_was_done(store: Store, run: LearningRun
     altered(store.path, *INTERRUPTED)
     shown = tables_around_trial(store, 1)
     assert "trial 1, t-hook (unfinished, 2 steps so far): " in shown.title
+
+
+@pytest.mark.parametrize("planner", ["nested-query:threshold=0.3", "psychic:threshold=0.3"])
+def test_a_trial_leaves_out_what_its_own_planner_leaves_out(planner: str, store: Store) -> None:
+    """Also one that this affcli lacks: its record says at which probability."""
+    run = stored(store, spec_of("t-hook", 300, settings=BLURRED))
+    counted(solving(store, run, "1"))
+    last = store.trials.trials(run_id=run.id)[-1].id
+    usual = tables_around_trial(store, last)
+    assert counts(usual.views[0])[RowStatus.EXCLUDED] > 0
+    assert usual.key[RowStatus.LOST] == "lost: its probability fell to 1/2 or below in the trial"
+    altered(store.path, f"UPDATE trial SET planner = '{planner}'")
+    shown = tables_around_trial(store, last)
+    assert counts(shown.views[0])[RowStatus.EXCLUDED] == 0
+    assert shown.key[RowStatus.LOST] == "lost: its probability fell to 0.3 or below in the trial"
