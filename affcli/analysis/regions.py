@@ -3,9 +3,9 @@
 from functools import lru_cache
 
 from affcli.core.affordance import Affordance
-from affcli.core.behavior import GRASP, BehaviorCall
+from affcli.core.behavior import BehaviorCall
 from affcli.core.geometry import Point, Pose
-from affcli.core.tool import Tool, ToolPart, hold_of, placed_parts
+from affcli.core.tool import Tool, ToolPart, known_hold, placed_parts
 
 UNKNOWN = "-"
 """The region of a row whose tool is known by its name alone."""
@@ -45,6 +45,7 @@ def parts_at(tool: Tool, binding: BehaviorCall, angle: float) -> tuple[ToolPart,
     Returns:
         As many parts as the tool has: none when its shape, or how it was held, is not known.
     """
-    if not tool.parts or binding.name != GRASP:
+    hold = known_hold(binding)
+    if not tool.parts or hold is None:
         return ()
-    return placed_parts(tool.held(hold_of(binding)).parts, Pose(0.0, 0.0, angle))
+    return placed_parts(tool.held(hold).parts, Pose(0.0, 0.0, angle))

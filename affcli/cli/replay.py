@@ -38,6 +38,7 @@ from affcli.lab.drawing import require_figures
 from affcli.lab.filming import FRAME_RATE
 from affcli.report.replaying import (
     Frame,
+    all_words,
     behavior_frames,
     closing_words,
     differences_json,
@@ -53,7 +54,8 @@ SLOWEST, FASTEST = 0.05, 100.0
 MOST_PICTURES = 4_500
 """Of a GIF: five minutes of robot time at its own speed, some 2 MB."""
 MOST_SAID = 20
-"""Trials that differ from their record; --json names all."""
+"""Trials that differ from their record, or reasons for which some cannot be replayed; --json names
+all."""
 
 Trial = Annotated[
     int | None,
@@ -228,30 +230,44 @@ def _replay_run(
 
 
 def _replay_all(store: "stores.Store", *, as_json: bool) -> int:
-    """Do every stored trial again; say how many equal their record."""
+    """Do every stored trial again; say how many equal their record.
+
+    Raises:
+        AffcliError: none can be replayed; of the kind of what prevents the first.
+    """
     trials = store.trials.trials()
     if not trials:
         raise UsageError("no trials yet; first run: affcli solve --goal 1")
     differing: dict[int, str] = {}
-    not_replayed: dict[int, str] = {}
+    prevented: dict[int, AffcliError] = {}
     with progress("replaying", len(trials)) as bar:
         for number, trial in enumerate(trials, 1):
             try:
                 again = lab.replaying.replay_trial(store, trial.id)
             except AffcliError as error:  # it names what is not here, or is damaged: others are not
-                not_replayed[trial.id] = str(error)
+                prevented[trial.id] = error
             else:
                 if again.differences:
                     differing[trial.id] = verdict(len(again.steps), again.differences)
             bar(number, f"{number} of {len(trials)} trials")
-    otherwise = differing | not_replayed
-    equal = len(trials) - len(otherwise)
+    not_replayed = {number: str(error) for number, error in prevented.items()}
+    replayed = len(trials) - len(not_replayed)
+    equal = replayed - len(differing)
     if as_json:
         found = {"trials": len(trials), "equal": equal, "differing": differing}
         show_json({**found, "not_replayed": not_replayed})
-    for trial_id in sorted(otherwise)[:MOST_SAID]:
-        say(f"trial {trial_id}: {otherwise[trial_id]}")
-    if len(otherwise) > MOST_SAID:
-        say(f"and {len(otherwise) - MOST_SAID} more; --json names them all")
-    say(f"{equal} of {len(trials)} trials equal their record in every step")
-    return 1 if otherwise else 0
+    *lines, last = all_words(equal, replayed, not_replayed)
+    _say_some([f"trial {number}: {differing[number]}" for number in sorted(differing)])
+    _say_some(lines)
+    if not replayed:
+        raise type(next(iter(prevented.values())))(last)
+    say(last)
+    return 1 if equal < len(trials) else 0
+
+
+def _say_some(lines: Sequence[str]) -> None:
+    """Say as many lines as are read, and how many more there are."""
+    for line in lines[:MOST_SAID]:
+        say(line)
+    if len(lines) > MOST_SAID:
+        say(f"and {len(lines) - MOST_SAID} more; --json names them all")

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any, NamedTuple, NewType
 
-from affcli.core.behavior import BehaviorCall
+from affcli.core.behavior import GRASP, BehaviorCall
 from affcli.core.geometry import ConvexPolygon, Point, Pose
 from affcli.core.identity import key_of
 from affcli.errors import BadInputError, one_line
@@ -110,14 +110,22 @@ class Tool:
         return key_of(self.canonical())
 
 
+def known_hold(binding: BehaviorCall) -> Hold | None:
+    """Return how a grasp holds the tool; None for a binding of which this affcli does not know."""
+    if binding.name != GRASP or "grasp_point" not in dict(binding.params):
+        return None
+    return Hold(binding["grasp_point"], math.radians(binding.get("angle", 0.0)))
+
+
 def hold_of(binding: BehaviorCall) -> Hold:
-    """Return how a grasp holds the tool; BadInputError for a binding that names no grasp point."""
-    if "grasp_point" not in dict(binding.params):
+    """Return how a binding holds the tool; BadInputError where this affcli does not know."""
+    hold = known_hold(binding)
+    if hold is None:
         raise BadInputError(
             f"{one_line(binding, 80)}: this affcli does not know where that binding holds the "
             "tool; install what made the record"
         )
-    return Hold(binding["grasp_point"], math.radians(binding.get("angle", 0.0)))
+    return hold
 
 
 def tool_from_canonical(value: Any) -> Tool:

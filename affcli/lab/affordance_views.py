@@ -1,7 +1,10 @@
 """Affordance tables and their rows, read for figures (Figs. 5 and 6)."""
 
+from affcli import registry
+from affcli.core.affordance import PROBABILITY_THRESHOLD
+from affcli.core.identity import Component
 from affcli.core.records import LearningRunInfo
-from affcli.errors import UsageError
+from affcli.errors import BadInputError, UsageError
 from affcli.lab.run_parts import settings_of
 from affcli.report import table_views
 from affcli.report.table_views import RowView, ShownTables
@@ -35,12 +38,14 @@ def tables_around_trial(store: Store, trial_id: int) -> ShownTables:
     """
     trial = store.trials.trial(trial_id)
     run = store.learning.run(trial.run_id)
+    threshold = _threshold(trial.spec.planner)
     return table_views.trial_shown(
         trial,
         run,
         store.learning.rows(run.id),
         store.trials.steps(trial_id),
-        store.trials.excluded_before(trial_id),
+        store.trials.excluded_before(trial_id, threshold),
+        threshold,
         _puck_radius(run),
     )
 
@@ -54,6 +59,18 @@ def row_shown(store: Store, row_id: int) -> tuple[str, RowView]:
     stored = store.learning.row(row_id)
     run = store.learning.run(stored.run_id)
     return table_views.row_shown(stored, run, _puck_radius(run))
+
+
+def _threshold(planner: Component) -> float:
+    """Return the replication probability at which a planner leaves a row out.
+
+    Of one that this affcli lacks, what its record says; the paper's if it does not say.
+    """
+    try:
+        return registry.planner(planner).threshold
+    except BadInputError:
+        said = dict(planner.params).get("threshold")
+        return float(said) if isinstance(said, int | float) else PROBABILITY_THRESHOLD
 
 
 def _puck_radius(run: LearningRunInfo) -> float:

@@ -2,15 +2,18 @@
 
 from affcli.core.geometry import Pose
 from affcli.core.records import TrialInfo
-from affcli.core.tool import hold_of
+from affcli.core.tool import ToolPart, known_hold
 from affcli.errors import UsageError
 from affcli.lab.run_parts import require_shape, settings_of
 from affcli.report.film import FilmedTrial
+from affcli.report.words import call_words
 from affcli.store import Store
 
 
 def film_of(store: Store, trial_id: int, wanted: tuple[int, int] | None = None) -> FilmedTrial:
     """Return a trial with its steps, finished or not.
+
+    Without its tool when this affcli does not know how that was held; the title says so.
 
     Args:
         store: open.
@@ -28,13 +31,17 @@ def film_of(store: Store, trial_id: int, wanted: tuple[int, int] | None = None) 
     if wanted is not None:
         _require_steps(trial_id, wanted, len(steps))
     spec, learned = info.spec, info.learned
-    workspace, hold = settings_of(learned).workspace, hold_of(learned.binding)
-    believed, held = learned.held.held(hold), spec.held.held(hold)
+    workspace, hold = settings_of(learned).workspace, known_hold(learned.binding)
+    parts: tuple[ToolPart, ...] = ()
+    missing = parts
+    if hold is not None:
+        held = spec.held.held(hold)
+        parts, missing = held.parts, learned.held.held(hold).parts_missing_in(held)
     return FilmedTrial(
         title=_title(info),
         ending=None if info.outcome is None else info.outcome.value,
-        parts=held.parts,
-        missing=believed.parts_missing_in(held),
+        parts=parts,
+        missing=missing,
         goal=spec.task.goal,
         wrist=Pose(*workspace.wrist_start),
         puck=spec.task.start,
@@ -56,4 +63,6 @@ def _title(info: TrialInfo) -> str:
     """Return which trial it is."""
     spec = info.spec
     tool = spec.tool if spec.tool == spec.shape else f"{spec.tool}, broken: {spec.shape}"
+    if known_hold(info.learned.binding) is None:
+        tool += f" (not drawn: held by {call_words(info.learned.binding)})"
     return f"Trial {info.id}: {tool}, goal {spec.goal}, start {spec.start}"

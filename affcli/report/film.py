@@ -27,8 +27,8 @@ class FilmedTrial:
     Args:
         title: which trial, in words.
         ending: how it ended, in a word or three; None when it has not.
-        parts: of the shape that was held (tool frame).
-        missing: parts that the robot believed to hold as well (tool frame).
+        parts: of the shape that was held (hand frame); none when it is not known how it was held.
+        missing: parts that the robot believed to hold as well (hand frame).
         goal: the goal region.
         wrist, puck: where they were at the start (in, rad, table frame).
         puck_radius: in.

@@ -1,6 +1,6 @@
 """A replay on the terminal, one frame a moment; and as JSON types."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from textwrap import fill
@@ -26,6 +26,8 @@ GAP = 2
 MOST_CLOSE = 2
 """Rows shown of those that search 4 might have chosen instead."""
 MOST_DIFFERENCES = 5
+MOST_NUMBERS = 10
+"""Trials named that cannot be replayed for one reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,6 +182,42 @@ def verdict(
         for number, some in groupby(differences, key=lambda d: d.number)
     ]
     return f"the replay DIFFERS from the record in {_at_most(shown, MOST_DIFFERENCES)}"
+
+
+def by_reason(not_replayed: Mapping[int, str]) -> dict[str, list[int]]:
+    """Return for each reason the trials that cannot be replayed for it.
+
+    Args:
+        not_replayed: the reason of each trial, by its number, which the reason may begin with.
+    """
+    grouped: dict[str, list[int]] = {}
+    for number, reason in not_replayed.items():
+        grouped.setdefault(reason.removeprefix(f"trial {number}: "), []).append(number)
+    return grouped
+
+
+def all_words(equal: int, replayed: int, not_replayed: Mapping[int, str]) -> list[str]:
+    """Return what is said of a replay of all trials, last how many equal their record.
+
+    Args:
+        equal: how many do.
+        replayed: how many were done again.
+        not_replayed: as in `by_reason`.
+    """
+    same = f"{equal} of {replayed}{' replayed' * bool(not_replayed)} trials equal their record"
+    same += " in every step"
+    if not not_replayed:
+        return [same]
+    same += f"; {len(not_replayed)} could not be replayed"
+    grouped = by_reason(not_replayed)
+    if len(grouped) == 1 and not replayed:
+        return [f"{same}: {next(iter(grouped))}"]
+    named = (
+        f"trial{'s' * (len(numbers) > 1)} {_at_most(map(str, numbers), MOST_NUMBERS)} could not be "
+        f"replayed: {reason}"
+        for reason, numbers in grouped.items()
+    )
+    return [*named, same]
 
 
 def _differing(difference: Difference) -> str:

@@ -1,14 +1,14 @@
 """Affordance tables and rows as the figures show them: arrows over tools (Figs. 5 and 6)."""
 
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from affcli.analysis.regions import parts_at
 from affcli.analysis.row_status import RowStatus, around_trial, compared, current
-from affcli.core.affordance import Affordance
+from affcli.core.affordance import PROBABILITY_THRESHOLD, Affordance
 from affcli.core.behavior import BehaviorCall
 from affcli.core.records import LearningRunInfo, StoredRow, StoredStep, TrialInfo
-from affcli.core.tool import Tool, ToolPart, hold_of
+from affcli.core.tool import Tool, ToolPart, known_hold
 from affcli.errors import one_line
 from affcli.report.figures.words import tool_words
 from affcli.report.words import call_words, clock, many, unknown_shapes
@@ -20,7 +20,8 @@ class TableView:
 
     Args:
         heading: what stands over it; may be empty.
-        parts: of the tool, as it is held (in, hand frame); none when its shape is not known.
+        parts: of the tool, as it is held (in, hand frame); none when its shape, or how it is held,
+            is not known.
         missing: parts that the tool has lost.
         puck_radius: of the attractor (in).
         rows: the rows, each with its status.
@@ -43,7 +44,8 @@ class RowView:
 
     Args:
         row: the row, with its counters as they are now.
-        tool: the tool it was learned with, as it was held (in, hand frame).
+        tool: the tool it was learned with, as it was held (in, hand frame); without parts when its
+            shape, or how it was held, is not known.
         puck_radius: of the attractor (in).
     """
 
@@ -79,7 +81,7 @@ def run_shown(run: LearningRunInfo, rows: Sequence[Affordance], puck_radius: flo
     counted = many(len(rows), "row") + (f", {left_out} of them excluded" if left_out else "")
     title = f"run {run.id}, {run.spec.tool}{_unfinished(run)}, {counted}"
     key = {RowStatus.LIVE: "live row of the affordance table", RowStatus.EXCLUDED: EXCLUDED}
-    return _shown(title, run, [view], key, run.spec.held)
+    return _shown(title, (run,), [view], key, run.spec.held)
 
 
 def runs_compared(
@@ -105,7 +107,7 @@ def runs_compared(
         RowStatus.WON: f"won: only in run {other.id}",
         RowStatus.EXCLUDED: "excluded",
     }
-    return _shown(title, one, (before, after), key, *held)
+    return _shown(title, (one, other), (before, after), key, *held)
 
 
 def trial_shown(
@@ -114,6 +116,7 @@ def trial_shown(
     stored: Sequence[StoredRow],
     steps: Sequence[StoredStep],
     excluded_before: Collection[int],
+    threshold: float,
     puck_radius: float,
 ) -> ShownTables:
     """Return the table that a trial started from, and what it left of it.
@@ -124,6 +127,7 @@ def trial_shown(
         stored: all its rows.
         steps: those of the trial.
         excluded_before: the rows that were excluded before it.
+        threshold: of its planner: a row of this replication probability or below is excluded.
         puck_radius: of the attractor (in).
     """
     tried = {step.affordance_id for step in steps}
@@ -142,34 +146,46 @@ def trial_shown(
         f"trial {trial.id}, {tool.name}{became}{so_far}: "
         f"{after.count(RowStatus.KEPT)} rows kept, {after.count(RowStatus.LOST)} lost"
     )
+    limit = "1/2" if threshold == PROBABILITY_THRESHOLD else f"{threshold:g}"
     key = {
         RowStatus.KEPT: "kept",
-        RowStatus.LOST: "lost: its probability fell to 1/2 or below in the trial",
+        RowStatus.LOST: f"lost: its probability fell to {limit} or below in the trial",
         RowStatus.EXCLUDED: "excluded before the trial",
     }
-    return _shown(title, run, (before, after), key, tool, left)
+    return _shown(title, (run,), (before, after), key, tool, left)
 
 
 def row_shown(stored: StoredRow, run: LearningRunInfo, puck_radius: float) -> tuple[str, RowView]:
     """Return a row of an affordance table with a title."""
     row, tool = stored.row, run.spec.held
     what = f"row {stored.id}, {tool.name}, {call_words(row.exploratory)} (run {run.id})"
-    title = "; ".join(filter(None, (what, unknown_shapes([tool]))))
-    held = tool.held(hold_of(row.binding)) if tool.parts else tool
+    left_out = unknown_shapes([tool]), _unknown_holds([row.binding])
+    title = "; ".join(filter(None, (what, *left_out)))
+    hold = known_hold(row.binding)
+    held = replace(tool, parts=()) if hold is None else tool.held(hold) if tool.parts else tool
     return one_line(title, 500), RowView(row, held, puck_radius)
 
 
 def _shown(
     title: str,
-    run: LearningRunInfo,
+    runs: Sequence[LearningRunInfo],
     views: Sequence[TableView],
     key: Mapping[RowStatus, str],
     *tools: Tool,
 ) -> ShownTables:
-    """Return tables under a title that names the tools whose shape is not known."""
-    calls = [one.call for one in run.spec.repertoire]
-    title = "; ".join(filter(None, (title, unknown_shapes(tools))))
+    """Return tables under a title that names what is not drawn; the first run's behaviors."""
+    calls = [one.call for one in runs[0].spec.repertoire]
+    left_out = unknown_shapes(tools), _unknown_holds(run.spec.binding for run in runs)
+    title = "; ".join(filter(None, (title, *left_out)))
     return ShownTables(one_line(title, 500), calls, views, key)
+
+
+def _unknown_holds(bindings: Iterable[BehaviorCall]) -> str:
+    """Return the line that says which bindings leave a tool out of drawings; empty if none does."""
+    names = sorted({call_words(binding) for binding in bindings if known_hold(binding) is None})
+    if not names:
+        return ""
+    return f"tool not drawn, for this affcli does not know where it is held: {', '.join(names)}"
 
 
 def _view(

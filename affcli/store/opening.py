@@ -192,13 +192,15 @@ def _copy_before(revision: str, path: Path) -> Path:
 @contextmanager
 def _failure_named(path: Path, revision: str, copy: Path) -> Iterator[None]:
     """Say in one line that a migration failed on what is in the database."""
+    failed = f"{one_line(path)}: could not be brought from revision {revision} to {REVISION}"
     try:
         yield
+    except DatabaseError as error:
+        raise DatabaseError(f"{failed}: {error}; it is as it was") from error
     except sa.exc.DBAPIError as error:
         if result_code(error) & PRIMARY not in OF_THE_STATEMENT:
             raise
         raise DatabaseError(
-            f"{one_line(path)}: could not be brought from revision {revision} to {REVISION}: "
-            f"{one_line(error.orig)}; it is as it was, and {one_line(copy)} is a copy; was "
-            "something added to it that is not affcli's? Take that out, then try again"
+            f"{failed}: {one_line(error.orig)}; it is as it was, and {one_line(copy)} is a copy; "
+            "was something added to it that is not affcli's? Take that out, then try again"
         ) from error

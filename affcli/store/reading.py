@@ -76,8 +76,11 @@ def tool(name: str, definition: str | None) -> Tool:
 
 
 def reasons(text: str) -> Reasons:
-    """Return what a planner went by."""
-    return tuple(Reason(**one) for one in json.loads(text))
+    """Return what a planner went by; what a newer affcli says beside that is left out."""
+    return tuple(
+        Reason(**{name: one[name] for name in Reason._fields if name in one})
+        for one in json.loads(text)
+    )
 
 
 def pose(row: Columns, name: str) -> Pose:

@@ -14,6 +14,8 @@ from typing import Any
 
 from alembic import op
 
+from affcli.errors import DatabaseError
+
 revision = "0004"
 down_revision = "0003"
 branch_labels = None
@@ -189,6 +191,7 @@ REASONS = (
 
 def upgrade() -> None:
     driver = op.get_bind().connection.driver_connection
+    _require_settings(driver)
     for function, arguments in FUNCTIONS:
         driver.create_function(function.__name__, arguments, function, deterministic=True)
     views = "SELECT sql FROM sqlite_master WHERE name = 'affordance_wide'"
@@ -248,6 +251,20 @@ def upgrade() -> None:
 
 def downgrade() -> None:
     raise NotImplementedError("parts by value would be lost; keep a copy of the file")
+
+
+def _require_settings(driver: sqlite3.Connection) -> None:
+    """Make sure that all settings can be read: SQL would not say whose cannot."""
+    for table in ("learning_run", "session"):
+        for number, text in driver.execute(f"SELECT id, settings FROM {table} ORDER BY id"):
+            try:
+                # These read each of the settings that the others read.
+                _canonical(text), _tool(text, "t-hook"), place(text, "goal_x", 1)
+            except (ValueError, TypeError, AttributeError, KeyError, RecursionError) as error:
+                raise DatabaseError(
+                    f"{table.replace('_', ' ')} {number}: settings that are no JSON of affcli's; "
+                    "restore a copy"
+                ) from error
 
 
 def _rebuild(

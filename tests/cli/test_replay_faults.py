@@ -107,3 +107,30 @@ def test_without_where_a_row_was_made_it_is_not_known_whether_it_is_lost(used: P
     line = refused(3, "replay", "21", "--db", used)
     assert "learning run 1 lacks behaviors that made its rows; restore a copy" in line
     assert affcli("replay", SOLVED, "--db", used).code == 0
+
+
+def test_where_no_trial_can_be_replayed_none_differs(used: Path) -> None:
+    """The exit code is that of what prevents it, as for a single trial; each reason comes once."""
+    altered(used, """update learning_run set settings = '{"new.flag":1}'""")
+    reason = refused(3, "replay", SOLVED, "--db", used).removeprefix("affcli: ")
+    none = "0 of 0 replayed trials equal their record in every step; 40 could not be replayed"
+    assert refused(3, "replay", "--all", "--db", used) == f"affcli: {none}: {reason}"
+    altered(used, "update trial set world = 'table@7' where id in (2, 3)")
+    ended = affcli("replay", "--all", "--db", used)
+    assert ended.code == 3
+    numbers = "1, 4, 5, 6, 7, 8, 9, 10, 11, 12 and 28 more"
+    first, second, last = ended.err.splitlines()
+    assert first == f"trials {numbers} could not be replayed: {reason}"
+    assert last == f"affcli: {none}"
+    assert second.startswith("trials 2, 3 could not be replayed: made in version 7 of the world")
+
+
+def test_what_cannot_be_replayed_is_counted_apart_from_what_equals_its_record(used: Path) -> None:
+    altered(used, "update trial set shape_key = null where id in (2, 3)")
+    ended = affcli("replay", "--all", "--db", used)
+    assert ended.code == 1
+    reason, says = ended.err.splitlines()
+    assert reason.startswith("trials 2, 3 could not be replayed: this affcli does not know what a ")
+    assert says == (
+        "38 of 38 replayed trials equal their record in every step; 2 could not be replayed"
+    )

@@ -20,7 +20,11 @@ from affcli.lab.affordance_views import (
     tables_around_trial,
     tables_compared,
 )
+from affcli.lab.film_strips import film_of
 from affcli.report.figures.affordances import affordances_figure
+from affcli.report.figures.row import row_figure
+from affcli.report.figures.trial import trial_figure
+from affcli.report.film import shown_of
 from affcli.report.table_views import TableView
 from affcli.store import Store
 from tests.lab.quick import (
@@ -171,3 +175,45 @@ def test_an_interrupted_trial_shows_what_was_done(store: Store, run: LearningRun
     altered(store.path, *INTERRUPTED)
     shown = tables_around_trial(store, 1)
     assert "trial 1, t-hook (unfinished, 2 steps so far): " in shown.title
+
+
+@pytest.mark.parametrize("planner", ["nested-query:threshold=0.3", "psychic:threshold=0.3"])
+def test_a_trial_leaves_out_what_its_own_planner_leaves_out(planner: str, store: Store) -> None:
+    """Also one that this affcli lacks: its record says at which probability."""
+    run = stored(store, spec_of("t-hook", 300, settings=BLURRED))
+    counted(solving(store, run, "1"))
+    last = store.trials.trials(run_id=run.id)[-1].id
+    usual = tables_around_trial(store, last)
+    assert counts(usual.views[0])[RowStatus.EXCLUDED] > 0
+    assert usual.key[RowStatus.LOST] == "lost: its probability fell to 1/2 or below in the trial"
+    altered(store.path, f"UPDATE trial SET planner = '{planner}'")
+    shown = tables_around_trial(store, last)
+    assert counts(shown.views[0])[RowStatus.EXCLUDED] == 0
+    assert shown.key[RowStatus.LOST] == "lost: its probability fell to 0.3 or below in the trial"
+
+
+PINCHED = (
+    f"UPDATE {table} SET binding_behavior = 'pinch', binding_params = '{{\"side\": 2}}'"
+    for table in ("learning_run", "affordance")
+)
+"""What another affcli has that holds a tool by its side."""
+
+
+def test_a_tool_of_which_it_is_not_known_how_it_is_held_is_left_out_and_named(
+    store: Store, run: LearningRunInfo
+) -> None:
+    """Rows, arrows and steps are drawn all the same."""
+    counted(solving(store, run, "2", "1"))
+    altered(store.path, *PINCHED)
+    left_out = "; tool not drawn, for this affcli does not know where it is held: pinch 2"
+    title, view = row_shown(store, store.learning.rows(run.id)[2].id)
+    assert (view.tool.name, view.tool.parts) == ("t-hook", ())
+    assert title.endswith(left_out)
+    assert row_figure(view).axes
+    shown = tables_around_trial(store, 1)
+    assert shown.title.endswith(left_out)
+    assert shown.views[0].parts == ()
+    film = film_of(store, 1)
+    assert (film.parts, film.missing) == ((), ())
+    assert film.title == "Trial 1: t-hook (not drawn: held by pinch 2), goal 2, start 1"
+    assert trial_figure(film, shown_of(film.steps, None)).axes

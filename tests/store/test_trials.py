@@ -1,5 +1,7 @@
 """Sessions, trials and steps; counters and steps hold together."""
 
+import sqlite3
+from contextlib import closing
 from dataclasses import replace
 
 import pytest
@@ -48,6 +50,12 @@ def counters_of(store: Store) -> list[tuple[Cell, ...]]:
     return list(
         run_sql(store.path, "select times_used, times_successful from affordance order by id").rows
     )
+
+
+def say_last(store: Store, reasons: str) -> None:
+    """Let all trials end with these reasons, as another affcli may write them."""
+    with closing(sqlite3.connect(store.path)) as driver, driver:
+        driver.execute("UPDATE trial SET last_reasons = ?", [reasons])
 
 
 def begin_solving(store: Store) -> int:
@@ -225,6 +233,23 @@ def test_a_trial_keeps_how_it_ended(store: Store) -> None:
     assert value(store, "select last_reasons from trial") == (
         '[{"name":"probable","rows":0,"value":0.5}]'
     )
+
+
+def test_a_reason_of_a_newer_affcli_is_read_as_far_as_it_is_known(store: Store) -> None:
+    run = learned(store)
+    session, reasons = begin_solving(store), (Reason("probable", 0, 0.5),)
+    record = TrialRecord(trial_spec(), (), TrialEnd(Outcome.NO_ROW, 3, 41.5, reasons))
+    (trial,) = store.trials.save_all(session, run.id, [record], {})
+    for text in (
+        '[{"name":"probable","rows":0,"value":0.5,"unit":"in"}]',
+        '[{"unit":"in","value":0.5,"rows":0,"name":"probable"}]',
+    ):
+        say_last(store, text)
+        assert store.trials.trial(trial).last_reasons == reasons
+    for text in ('[{"unit":"in"}]', '["name"]', "[7]", "7"):
+        say_last(store, text)
+        with pytest.raises(DatabaseError, match=f"trial {trial} holds a value"):
+            store.trials.trial(trial)
 
 
 def test_every_step_is_kept_with_the_row_it_tried(store: Store) -> None:

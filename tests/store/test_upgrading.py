@@ -103,3 +103,26 @@ def test_what_a_migration_stumbles_over_is_named_and_the_copy_opens(
     assert f"could not be brought from revision 0001 to {REVISION}" in message
     assert str(told[0].name) in message
     assert everything(path) == everything(told[0]) == before
+
+
+@pytest.mark.fault(10)
+@pytest.mark.parametrize(
+    "settings", ["{", "", "7", "[]", '{"arm":7}', '{"tools":{"part_width":"wide"}}']
+)
+@pytest.mark.parametrize(
+    ("table", "whose"), [("learning_run", "learning run 3"), ("session", "session 3")]
+)
+def test_settings_that_cannot_be_read_are_named_and_nothing_is_changed(
+    table: str, whose: str, settings: str, tmp_path: Path
+) -> None:
+    path = old_database("0003", tmp_path)
+    with closing(sqlite3.connect(path, isolation_level=None)) as driver:
+        driver.execute(f"UPDATE {table} SET settings = ? WHERE id = 3", [settings])
+    before = everything(path)
+    with pytest.raises(DatabaseError) as caught:
+        upgrade(path)
+    assert str(caught.value).endswith(
+        f"old.db: could not be brought from revision 0003 to {REVISION}: {whose}: settings that "
+        "are no JSON of affcli's; restore a copy; it is as it was"
+    )
+    assert everything(path) == before
