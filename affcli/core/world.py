@@ -13,6 +13,7 @@ from affcli.core.affordance import Affordance
 from affcli.core.behavior import BehaviorCall
 from affcli.core.observation import SensorKind
 from affcli.core.ports import Experimenter, Robot, Sensor
+from affcli.core.records import StepScene
 from affcli.core.scene import Scene
 from affcli.core.specs import LearningSpec, RowStarts, TrialSpec, VerificationSpec
 from affcli.core.task import Task
@@ -134,6 +135,9 @@ class World(Protocol):
 
     def prediction(self, spec: VerificationSpec, learned: LearningSpec) -> Setting:
         """Lay out fresh pushes (§6.1): as a verification, with random streams of their own."""
+
+    def step_again(self, step: StepScene, film: Film) -> bool:
+        """Do one step again from its record, shown to a film; False in a world that cannot."""
 
     def lost_rows(self, learned: LearningSpec, left: Tool, starts: RowStarts) -> LostRows | None:
         """Return who tells which rows were lost when the tool broke to `left`; None in a world that

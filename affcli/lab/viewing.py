@@ -6,25 +6,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from affcli import registry
-from affcli.behaviors.positioning import position_wrist
 from affcli.config import Settings
-from affcli.core.geometry import Point, Pose
-from affcli.core.observation import Observation
+from affcli.core.geometry import Pose
 from affcli.core.records import StepScene
 from affcli.core.scene import Scene
 from affcli.core.tool import PUCK_COLOR, hold_of
+from affcli.errors import UsageError
 from affcli.lab.filming import FRAME_RATE, Reel
 from affcli.lab.photographs import SHOWN, eye_at
-from affcli.lab.run_parts import require_shape, settings_of
+from affcli.lab.run_parts import require_shape, settings_of, world_of
 from affcli.perception.camera_sensor import Eye, picture_of_pattern, table_pattern
 from affcli.perception.images import png
 from affcli.perception.palette import MARKER_COLOR, ColorClass, Role
 from affcli.perception.rendering import Picture
 from affcli.perception.segmentation import Segmentation, Segmenter
 from affcli.perception.view import side_by_side, video
-from affcli.simulation.robot import SimulatedRobot
 from affcli.simulation.sensing import eye_of
-from affcli.simulation.table import Table
 from affcli.simulation.tasks.extension_of_reach import goal_regions, start_positions
 
 VIEW = 3
@@ -119,22 +116,13 @@ def film_of_step(step: StepScene, ending: str, *, frame_alone: bool) -> bytes:
 
 def scenes_of_step(step: StepScene) -> list[Scene]:
     """Return the scenes of a step, 15 a robot second."""
-    settings, begins = settings_of(step.learned), _scene(step)
-    table = Table(settings.workspace, settings.physics)
-    table.put_down(step.held.painted(step.learned.held.color))
-    table.take(hold_of(step.binding))
-    table.goal = begins.goal
-    table.wrist = step.wrist_before or table.home
-    table.attractor = begins.attractor
-    robot = SimulatedRobot(table, step.learned.repertoire)
+    require_shape(step.held)
     reel = Reel()
-    robot.film = reel
-    target = step.wrist_end if step.blocked else step.wrist_start
-    # With an offset of zero, position wrist goes to where the attractor was seen: to the target.
-    aim = Observation(target.x, target.y, *[0.0] * 10)
-    robot.execute(position_wrist(Point(0.0, 0.0), target.angle), aim)
-    if not step.blocked:
-        robot.execute(step.call, aim)
+    if not world_of(step.learned, again=True).step_again(step, reel):
+        raise UsageError(
+            f"{step.title}: the world {step.learned.world} cannot show a step again; "
+            "leave out --video"
+        )
     return list(reel.cut())
 
 

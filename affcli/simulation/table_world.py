@@ -6,12 +6,14 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from affcli.behaviors.positioning import position_wrist
 from affcli.core.affordance import Affordance, replicates
 from affcli.core.behavior import BehaviorCall, BehaviorName
-from affcli.core.geometry import Pose
+from affcli.core.geometry import Point, Pose
 from affcli.core.identity import stream_number
-from affcli.core.observation import Movement, SensorKind
+from affcli.core.observation import Movement, Observation, SensorKind
 from affcli.core.ports import Sensor
+from affcli.core.records import StepScene
 from affcli.core.scene import Scene
 from affcli.core.setting import LARGEST
 from affcli.core.specs import LearningSpec, RowStarts, TrialSpec, VerificationSpec
@@ -193,6 +195,24 @@ class TableWorld:
     def prediction(self, spec: VerificationSpec, learned: LearningSpec) -> TableSetting:
         """Lay out fresh pushes (§6.1)."""
         return self._tested(PREDICTION, spec, learned)
+
+    def step_again(self, step: StepScene, film: Film) -> bool:
+        """Carry the tool to where the step began, then do its behavior unless it was blocked."""
+        table = self._table
+        table.put_down(step.held.painted(step.learned.held.color))
+        table.take(hold_of(step.binding))
+        table.goal = step.goal
+        table.wrist = step.wrist_before or table.home
+        table.attractor = Pose(*step.attractor_start)
+        robot = SimulatedRobot(table, step.learned.repertoire)
+        robot.film = film
+        target = step.wrist_end if step.blocked else step.wrist_start
+        # With an offset of zero, position wrist goes to where the attractor is seen: the target.
+        aim = Observation(target.x, target.y, *[0.0] * 10)
+        robot.execute(position_wrist(Point(0.0, 0.0), target.angle), aim)
+        if not step.blocked:
+            robot.execute(step.call, aim)
+        return True
 
     def lost_rows(self, learned: LearningSpec, left: Tool, starts: RowStarts) -> "LostAffordances":
         """Return who tells which rows were lost when the tool broke to `left`."""

@@ -16,6 +16,7 @@ from affcli.core.geometry import Point
 from affcli.core.observation import Observation, SensorKind
 from affcli.core.part import Kind, Part
 from affcli.core.ports import Experimenter, Robot, Sensor
+from affcli.core.records import StepScene
 from affcli.core.scene import Scene
 from affcli.core.setting import Setting as Parameter
 from affcli.core.specs import LearningSpec, RowStarts, TrialSpec, VerificationSpec
@@ -23,7 +24,7 @@ from affcli.core.task import Task
 from affcli.core.tool import Tool
 from affcli.core.trial import BabblingRecord
 from affcli.core.world import Film
-from affcli.simulation.table_world import TableSetting, TableWorld
+from affcli.simulation.table_world import TableSetting, TableWorld, TaskSet
 
 
 def register(monkeypatch: pytest.MonkeyPatch, *added: Part, without: str = "") -> None:
@@ -133,8 +134,8 @@ class SilentWorld:
     unit = "in"
     exact_replay = False
 
-    def __init__(self, settings: Settings) -> None:
-        self._table = TableWorld(settings)
+    def __init__(self, settings: Settings, task_sets: Mapping[str, TaskSet]) -> None:
+        self._table = TableWorld(settings, task_sets)
 
     def packages(self, sensor: SensorKind) -> tuple[str, ...]:
         return ("numpy",)
@@ -155,6 +156,9 @@ class SilentWorld:
 
     def prediction(self, spec: VerificationSpec, learned: LearningSpec) -> SilentSetting:
         return SilentSetting(self._table.prediction(spec, learned))
+
+    def step_again(self, step: StepScene, film: Film) -> bool:
+        return False
 
     def lost_rows(self, learned: LearningSpec, left: Tool, starts: RowStarts) -> None:
         return None

@@ -1,10 +1,13 @@
 """Pictures and films of stored steps show what happened in them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from affcli.config import Settings
 from affcli.core.geometry import Pose
+from affcli.core.identity import Component
 from affcli.core.records import StepScene
 from affcli.core.scene import Scene
 from affcli.errors import UsageError
@@ -12,6 +15,7 @@ from affcli.lab.filming import FRAME_RATE
 from affcli.lab.run_parts import settings_of
 from affcli.lab.viewing import scenes_of_step, view_of_step, view_of_table
 from affcli.store import Store
+from tests.lab.parts import SILENT, register
 from tests.lab.quick import counted, solving, spec_of, stored
 
 
@@ -43,6 +47,17 @@ def test_a_film_of_a_step_runs_from_its_beginning_to_its_end(steps: list[StepSce
         seconds = len(film) / FRAME_RATE
         assert 1.0 < seconds < 20.0
         assert largest_leap(film) <= 12.5 / FRAME_RATE + 0.1
+
+
+def test_a_world_that_cannot_show_a_step_again_is_named(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    info = stored(store, spec_of("stick", behaviors=5))
+    step = store.learning.scene(info.id, 1)
+    register(monkeypatch, SILENT)
+    silent = replace(step, learned=replace(step.learned, world=Component("silent")))
+    with pytest.raises(UsageError, match="the world silent cannot show a step again"):
+        scenes_of_step(silent)
 
 
 def test_a_film_of_a_babbled_behavior(store: Store) -> None:
