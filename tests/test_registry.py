@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -55,6 +56,14 @@ def test_names_are_those_of_one_part_each() -> None:
         found = [part.name for part in PARTS if part.kind == kind]
         assert found
         assert len(set(found)) == len(found)
+
+
+def test_two_parts_of_one_name_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    stick = registry.part("tools", "stick")
+    twins = SimpleNamespace(PARTS=(stick, replace(stick, summary="another")))
+    monkeypatch.setattr(registry, "_modules", lambda home: [twins])
+    with pytest.raises(BadInputError, match="two tools are named stick; rename one"):
+        registry.parts.__wrapped__("tools")
 
 
 def test_the_paper_s_parts_are_the_defaults_and_in_the_order_of_the_paper() -> None:

@@ -7,9 +7,14 @@ import pytest
 from affcli import registry
 from affcli.config import Settings, settings_with
 from affcli.core.behavior import BehaviorCall, BehaviorName
+from affcli.core.geometry import Point
 from affcli.core.identity import Component, canonical_json
 from affcli.core.motion import Slide
-from affcli.core.tool import unknown_tool
+from affcli.core.part import Part
+from affcli.core.setting import Setting
+from affcli.core.task import GoalRegion, Task
+from affcli.core.tool import Tool, ToolName, unknown_tool
+from affcli.core.workspace import TaskLayout, ToolGeometry
 from affcli.errors import AffcliError, BadInputError, DatabaseError, UsageError
 from affcli.lab.learning_run import LearningRun
 from affcli.lab.run_parts import (
@@ -108,7 +113,7 @@ BEHAVIOR = BehaviorCall.of(BehaviorName("juggle"), {})
         ),
         ({"settings": canonical_json({"wings.span": 3.0})}, DatabaseError, r"wings\.span = 3"),
         ({"held": unknown_tool("spoon")}, DatabaseError, "what a spoon looks like"),
-        ({"binding": BEHAVIOR}, BadInputError, "binding juggle"),
+        ({"binding": BEHAVIOR}, BadInputError, "juggle: this affcli does not know where"),
     ],
 )
 def test_a_run_begins_with_all_its_parts_or_says_which_is_missing(
@@ -141,3 +146,58 @@ def test_a_part_that_was_added_is_found_like_any_other(monkeypatch: pytest.Monke
     parts = RunParts.chosen(Settings(), explorer="curious:patience=2")
     assert parts.explorer == Component.of("curious", {"patience": 2.0})
     assert RunParts.chosen(Settings(), explorer="curious:patience=3").explorer.params == ()
+
+
+def near(layout: TaskLayout) -> tuple[Task, ...]:
+    """Return one task that the paper has not: a small goal beside the start."""
+    goal = GoalRegion("beside", Point(3.0, layout.midline), 1.0)
+    return (Task("near", goal, "middle", Point(0.0, layout.midline)),)
+
+
+def test_a_set_of_tasks_is_there_as_soon_as_it_is_registered(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    part = Part(kind="tasks", name="near", summary="one task", source="a test", build=near)
+    with pytest.raises(UsageError, match="near"):
+        tasks_of(world_of(LEARNED), "near")
+    before = world_of(LEARNED)
+    register(monkeypatch, part)
+    (task,) = tasks_of(world_of(LEARNED), "near")
+    assert (task.goal.name, task.start_name) == ("beside", "middle")
+    with pytest.raises(UsageError, match="the world table has no tasks near"):
+        tasks_of(before, "near")
+
+
+def pinching(geometry: ToolGeometry) -> BehaviorCall:
+    return BehaviorCall.of(BehaviorName("pinch"), {"side": 2.0})
+
+
+def test_a_binding_that_no_robot_can_execute_is_refused_before_a_run_begins(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    part = Part(kind="bindings", name="pinch", summary="s", source="a test", build=pinching)
+    register(monkeypatch, part)
+    with pytest.raises(BadInputError, match="where that binding holds the tool"):
+        RunParts.chosen(Settings(), binding="pinch")
+    with pytest.raises(BadInputError, match="has version 1 of grasp; leave the version out"):
+        RunParts.chosen(Settings(), binding="grasp@2:angle=30")
+
+
+def test_a_tool_has_the_name_of_its_part_and_takes_parameters(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    width = Setting(2.0, "in", "Of the head.", 1.0, 9.0)
+
+    def rake(geometry: ToolGeometry, width: float) -> Tool:
+        return replace(tool_named("t-stick"), name=ToolName("rake" if width < 8.0 else "fork"))
+
+    register(
+        monkeypatch,
+        Part("tools", "rake", "a rake", "a test", build=rake, params={"width": width}),
+    )
+    parts = RunParts.chosen(Settings())
+    assert parts.tool("rake:width=5").name == "rake"
+    with pytest.raises(BadInputError, match="tool rake: its part makes a fork"):
+        parts.tool("rake:width=8")
+    with pytest.raises(BadInputError, match="rake: width = 20"):
+        parts.tool("rake:width=20")
