@@ -107,7 +107,7 @@ class Database:
 def insert_many(
     connection: sa.Connection, table: sa.TableClause, rows: Sequence[tuple[object, ...]]
 ) -> None:
-    """Insert rows given as tuples in the order of `rows.COLUMNS`.
+    """Insert rows given as tuples in the order of `columns.COLUMNS`.
 
     The driver runs the statement itself: 3.2 times as fast as handing SQLAlchemy the rows (3,500
     behaviors: 15 ms against 48 ms).

@@ -319,7 +319,8 @@ def insert_tools(connection: sa.Connection, *specs: Any) -> None:
     held = {spec.held for spec in specs if spec.held.parts}
     if held:
         connection.exec_driver_sql(
-            "INSERT OR IGNORE INTO tool (key, name, definition) VALUES (?, ?, ?)",
+            "INSERT INTO tool (key, name, definition) VALUES (?, ?, ?) "
+            "ON CONFLICT (key) DO NOTHING",
             [rows.tool_row(tool) for tool in held],
         )
 

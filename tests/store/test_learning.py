@@ -5,6 +5,7 @@ from dataclasses import replace
 from itertools import count
 
 import pytest
+import sqlalchemy as sa
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -26,7 +27,7 @@ from affcli.core.tool import Color, ToolName, unknown_tool
 from affcli.errors import DatabaseError, UsageError
 from affcli.lab.learning_run import LearningRun
 from affcli.store import Store, run_sql
-from affcli.store.learning import insert_steps
+from affcli.store.learning import insert_steps, insert_tools
 from tests.factories import learning_spec
 from tests.store.records import NOW, VERSIONS, begun, learned, learning_step, learning_steps
 
@@ -346,6 +347,15 @@ def test_tools_are_stored_once_by_value(store: Store) -> None:
         spec = replace(learning_spec(), held=tool)
         assert store.learning.begin(spec, VERSIONS, NOW).spec.held == tool
     assert run_sql(store.path, "select name from tool").rows == (("t-hook",), ("t-hook",))
+
+
+def test_a_tool_that_cannot_be_stored_is_not_passed_over(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Only one that is there already is."""
+    monkeypatch.setattr("affcli.store.rows.tool_row", lambda _: ("key", None, "{}"))
+    with pytest.raises(sa.exc.IntegrityError), store.database.writing() as connection:
+        insert_tools(connection, learning_spec())
 
 
 def test_a_world_that_does_not_tell_leaves_the_truth_open(store: Store) -> None:

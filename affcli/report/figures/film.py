@@ -118,7 +118,7 @@ def pictures_of(replay: Replay, numbers: Iterable[int], every: int = 1) -> Itera
     Args:
         replay: the trial.
         numbers: of the steps, counting from 1.
-        every: only each so-manieth frame is drawn, counted from the last one; and the first.
+        every: only each n-th frame is drawn, counted from the last one; and the first.
     """
     film = Film(replay.workspace, replay.opening.goal)
     path: list[Point] = []
