@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from affcli.core.affordance import Affordance
 from affcli.core.specs import TrialRecord
 from affcli.core.tool import Tool, middle_x
-from affcli.core.trial import Outcome
+from affcli.core.trial import Outcome, is_counted
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,8 @@ class Tally:
 
     @classmethod
     def of(cls, trials: Sequence[TrialRecord]) -> "Tally":
-        """Count the trials."""
+        """Count the trials that count."""
+        trials = [t for t in trials if is_counted(t.end.outcome)]
         solved = [t for t in trials if t.end.outcome is Outcome.SOLVED]
         steps = [step for t in trials for step in t.steps]
         return cls(
@@ -87,14 +88,16 @@ def missing_side(tool: Tool, left: Tool) -> float:
 
 
 def dead_rows(broken: Iterable[TrialRecord], side: float) -> list[DeadRow]:
-    """Return the rows that were excluded in broken-tool trials, oldest first.
+    """Return the rows that were excluded in broken-tool trials that count, oldest first.
 
     Args:
         broken: the trials with the broken tool.
         side: x of the missing parts' middle in the tool frame (in).
     """
     died: dict[int, DeadRow] = {}
-    for step in (step for t in broken for step in t.steps if step.record.died):
+    for step in (step for t in broken if is_counted(t.end.outcome) for step in t.steps):
+        if not step.record.died:
+            continue
         row = step.record.row
         before = died.get(row.step)
         on_missing = row.start.wrist_to_object_x * side > 0.0

@@ -18,10 +18,7 @@ from affcli.analysis.reproduction import Reproduction
 from affcli.analysis.statistics import ENOUGH_ROBOTS, Spread
 from affcli.core.records import SessionInfo, TrialInfo
 from affcli.core.specs import Protocol
-from affcli.core.trial import Outcome
-
-UNCOUNTED = (None, Outcome.INVALID)
-"""Trials that were interrupted, or whose simulation failed, tell nothing."""
+from affcli.core.trial import Outcome, is_counted
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,14 +122,14 @@ def results_of_single(
     """
     whole: dict[tuple[str, str, str], TrialInfo] = {}
     for trial in solving:
-        if trial.outcome not in UNCOUNTED:
+        if is_counted(trial.outcome):
             of = trial.spec
             name = row_name(of.tool, str(of.planner), of.task_set)
             whole[name, of.goal, of.start] = trial
     broken = {
         (t.spec.goal, t.spec.start): t
         for t in breaking
-        if t.outcome not in UNCOUNTED and papers_break(t.spec)
+        if is_counted(t.outcome) and papers_break(t.spec)
     }
     if not whole:
         return None

@@ -10,7 +10,7 @@ from affcli.analysis.reproduction import Reproduction
 from affcli.core.records import LearningRunInfo, SessionInfo, TrialInfo
 from affcli.core.results import BehaviorGroup
 from affcli.core.specs import Protocol, TrialSpec
-from affcli.core.trial import Outcome
+from affcli.core.trial import Outcome, is_counted
 
 
 class Tried(typing.Protocol):
@@ -120,8 +120,9 @@ class Overview:
         solved: successes of their ``solve`` trials.
         breakings: the ``break-tool`` sessions, oldest first; of the same one done again, the last.
         failures: how often each kind of failure occurred in these sessions.
-        trials: all trials of these sessions.
+        trials: all trials of these sessions that count.
         reproductions: the finished ones, oldest first.
+        invalid: how many trials of these sessions count for nothing: their simulation failed.
     """
 
     learned: Sequence[tuple[LearningRunInfo, Sequence[BehaviorGroup]]]
@@ -130,19 +131,20 @@ class Overview:
     failures: Mapping[str, int]
     trials: int
     reproductions: Sequence[Reproduction]
+    invalid: int = 0
 
 
 def goal_counts(results: Iterable[Tried], runs: Iterable[LearningRunInfo]) -> list[GoalCounts]:
     """Count successes by learning run, tool, sensor, planner and task set.
 
     Args:
-        results: with whole tools; those whose simulation failed count for nothing.
+        results: with whole tools; those that do not count are left out.
         runs: the learning runs whose tables were used.
     """
     as_the_paper = {run.id for run in runs if not other_parts(run.spec)}
     counts: dict[tuple[SolvedBy, bool], dict[str, tuple[int, int]]] = {}
     for trial in results:
-        if trial.outcome in (None, Outcome.INVALID):
+        if not is_counted(trial.outcome):
             continue
         spec = trial.spec
         by = SolvedBy(trial.run_id, spec.tool, spec.sensor, str(spec.planner), spec.task_set)
@@ -160,7 +162,7 @@ def breaking_of(
 ) -> Breaking | None:
     """Return the counts of one ``break-tool`` session; None when no broken tool was tried in it."""
     of = {
-        protocol: [t for t in results if t.spec.protocol is protocol and t.outcome]
+        protocol: [t for t in results if t.spec.protocol is protocol and is_counted(t.outcome)]
         for protocol in Protocol
     }
     adapting = [trial.spec for trial in of[Protocol.TOOL_ADAPTATION]]

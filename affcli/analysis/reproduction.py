@@ -9,7 +9,7 @@ from affcli.analysis.paper import EXTENSION_OF_REACH, other_parts, papers_break,
 from affcli.core.records import SessionInfo
 from affcli.core.results import SuccessCount
 from affcli.core.specs import Protocol
-from affcli.core.trial import Outcome
+from affcli.core.trial import Outcome, is_counted
 
 
 class TrialKind(NamedTuple):
@@ -45,9 +45,10 @@ class Reproduction:
             when the robots learned or chose otherwise than the paper's, or did none of its tasks.
         broken: successes of 16 of each robot with the paper's broken tool; none likewise.
         others: what the paper has not, by goal.
-        failures: how often each kind of failure occurred, over all trials.
+        failures: how often each kind of failure occurred, over all trials that count.
         trials: how many they are.
-        tries_on_lost: tries on lost affordances with broken tools, over all trials.
+        tries_on_lost: tries on lost affordances with broken tools, over all of them.
+        invalid: how many trials count for nothing: their simulation failed.
     """
 
     session: SessionInfo
@@ -58,6 +59,7 @@ class Reproduction:
     failures: Mapping[str, int]
     trials: int
     tries_on_lost: int
+    invalid: int = 0
 
     @classmethod
     def of(
@@ -89,7 +91,7 @@ class Reproduction:
             else:
                 kind = TrialKind(one.protocol, one.tool, one.shape, one.task_set, one.planner)
                 others.setdefault(kind, {}).setdefault(one.goal, []).append(one)
-        failures, trials = failures_in(outcomes)
+        failed = failures_in(outcomes)
         return cls(
             session,
             robots,
@@ -103,9 +105,7 @@ class Reproduction:
                 kind: {goal: _solved(some, robots) for goal, some in goals.items()}
                 for kind, goals in others.items()
             },
-            failures,
-            trials,
-            tries_on_lost,
+            *(failed.kinds, failed.trials, tries_on_lost, failed.invalid),
         )
 
     @property
@@ -116,11 +116,27 @@ class Reproduction:
         return [sum(column) for column in zip(*self.cells.values(), strict=True)]
 
 
-def failures_in(outcomes: Mapping[Outcome, int]) -> tuple[dict[str, int], int]:
-    """Return how often each kind of failure occurred, the commonest first; and all trials."""
-    kinds = {one.value: count for one, count in outcomes.items() if one is not Outcome.SOLVED}
+class Failures(NamedTuple):
+    """How trials failed.
+
+    Args:
+        kinds: how often each kind of failure occurred, the commonest first.
+        trials: how many trials count, the solved ones included.
+        invalid: how many count for nothing: their simulation failed.
+    """
+
+    kinds: Mapping[str, int]
+    trials: int
+    invalid: int
+
+
+def failures_in(outcomes: Mapping[Outcome, int]) -> Failures:
+    """Return how trials failed, from how often they ended in each way."""
+    counted = {one: number for one, number in outcomes.items() if is_counted(one)}
+    kinds = {one.value: number for one, number in counted.items() if one is not Outcome.SOLVED}
     ordered = sorted(kinds.items(), key=lambda item: (-item[1], item[0]))
-    return dict(ordered), sum(outcomes.values())
+    trials = sum(counted.values())
+    return Failures(dict(ordered), trials, sum(outcomes.values()) - trials)
 
 
 def _solved(counts: Iterable[SuccessCount], robots: int) -> Solved:

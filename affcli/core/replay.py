@@ -91,8 +91,11 @@ class Replay:
 
     @property
     def outcome(self) -> Outcome | None:
-        """How it ended; None when the record does not say."""
-        return None if self.end is None else self.end.outcome
+        """How it ended by its record, which counts; None when that does not say."""
+        if self.end is None:
+            return None
+        kept = [d.stored for d in self.differences if (d.number, d.column) == (0, "outcome")]
+        return Outcome(kept[0]) if kept else self.end.outcome
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,6 +29,11 @@ class Outcome(StrEnum):
     """The simulation diverged; the trial counts for nothing."""
 
 
+def is_counted(outcome: Outcome | None) -> bool:
+    """Tell whether a trial counts: not when it was interrupted, nor when its simulation failed."""
+    return outcome not in (None, Outcome.INVALID)
+
+
 @dataclass(frozen=True, slots=True)
 class Attempt:
     """One use of a row: it was tried and judged.

@@ -35,16 +35,17 @@ def overview_of(store: Store) -> Overview:
             which = (one.run, one.seed, one.tool, one.shape, one.sensor)
             latest[*which, one.planner, one.task_set] = one
     counted = [s.id for s in store.sessions.all("solve")] + [b.session for b in latest.values()]
-    failures, trials = failures_in(store.results.outcome_counts(counted))
+    failed = failures_in(store.results.outcome_counts(counted))
     return Overview(
         [(run, store.results.behavior_groups(run.id)) for run in runs],
         goal_counts(store.trials.trials(kind="solve"), runs),
         list(latest.values()),
-        failures,
-        trials,
+        failed.kinds,
+        failed.trials,
         [
             reproduction_of(store, session.id, session.spec.robots)
             for session in store.sessions.all("reproduce")
             if session.status == "done"
         ],
+        failed.invalid,
     )

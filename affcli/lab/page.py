@@ -7,6 +7,7 @@ from affcli.analysis.reproduction import Reproduction
 from affcli.core.records import LearningRunInfo, TrialInfo
 from affcli.core.replay import Replay
 from affcli.core.specs import Counters
+from affcli.core.trial import is_counted
 from affcli.errors import AffcliError, UsageError, one_line
 from affcli.lab.overview import reproduction_of
 from affcli.lab.replaying import replay_trial
@@ -141,6 +142,6 @@ def _broken(tools: Iterable[LearnedRows], replays: Iterable[Replay]) -> list[Bro
     learned = {one.run.id: one for one in tools}
     adapted: dict[tuple[int, str], list[Replay]] = {}
     for replay in replays:
-        if replay.spec.shape != replay.spec.tool and replay.end is not None:
+        if replay.spec.shape != replay.spec.tool and is_counted(replay.outcome):
             adapted.setdefault((replay.run_id, replay.spec.shape), []).append(replay)
     return [Broken(learned[run], trials) for (run, _), trials in adapted.items()]

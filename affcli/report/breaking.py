@@ -49,7 +49,9 @@ def broken_tables(run: LearningRunInfo, trials: Sequence[TrialRecord]) -> tuple[
     """
     broken, whole = broken_and_whole(trials)
     spec = broken[0].spec
-    heading = f"{len(broken)} trials each" if len(broken) == len(whole) else "trials"
+    tallies = Tally.of(broken), Tally.of(whole)
+    tried, beside = (tally.trials for tally in tallies)
+    heading = f"{tried} trials each" if tried == beside else "trials"
     planner = "" if str(spec.planner) == PLANNER else f"; planner: {spec.planner}"
     comparison = Sheet(
         (heading, f"broken: {spec.shape}", "whole"),
@@ -57,14 +59,12 @@ def broken_tables(run: LearningRunInfo, trials: Sequence[TrialRecord]) -> tuple[
         left=(heading,),
         caption=f"seen through: {spec.sensor}{planner}",
     )
-    for label, left, right in zip(
-        _LABELS, _figures(Tally.of(broken)), _figures(Tally.of(whole)), strict=True
-    ):
+    for label, left, right in zip(_LABELS, *map(_figures, tallies), strict=True):
         comparison.add(label, left, right)
     if papers_breaking(spec, run.spec):
         comparison.add("solved in the paper", f"{BROKEN} of 16", f"{BROKEN} of 16")
     dead = dead_rows(broken, missing_side(run.spec.held, spec.held))
-    return comparison, _excluded_table(dead, len(broken))
+    return comparison, _excluded_table(dead, tried)
 
 
 _LABELS = (

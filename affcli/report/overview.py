@@ -26,8 +26,8 @@ def overview_tables(overview: Overview) -> list[RenderableType]:
     shown += counts_tables(overview.solved, runs)
     if overview.breakings:
         shown.append(_breakings_table(overview.breakings))
-    if overview.trials:
-        shown.append(failures_table(overview.failures, overview.trials))
+    if overview.trials or overview.invalid:
+        shown.append(failures_table(overview.failures, overview.trials, overview.invalid))
     for reproduction in overview.reproductions:
         shown += reproduction_tables(reproduction)
     if not shown:
@@ -100,5 +100,6 @@ def overview_json(overview: Overview) -> dict[str, Any]:
         "broken": [asdict(breaking) for breaking in overview.breakings],
         "failures": dict(overview.failures),
         "trials": overview.trials,
+        "invalid": overview.invalid,
         "reproductions": [reproduction_json(again) for again in overview.reproductions],
     }

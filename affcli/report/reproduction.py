@@ -48,6 +48,7 @@ def reproduction_json(result: Reproduction) -> dict[str, Any]:
         ],
         "failures": dict(result.failures),
         "trials": result.trials,
+        "invalid": result.invalid,
         "tries_on_lost": result.tries_on_lost,
     }
 
@@ -74,7 +75,7 @@ def reproduction_tables(result: Reproduction) -> list[Sheet]:
         *([_cells_table(result)] if result.cells else []),
         *([_totals_table(result)] if result.totals or result.broken else []),
         *([_others_table(result)] if result.others else []),
-        failures_table(result.failures, result.trials),
+        failures_table(result.failures, result.trials, result.invalid),
     ]
 
 
@@ -182,18 +183,21 @@ def _note(robots: int) -> str:
     return "! = the paper's count lies outside"
 
 
-def failures_table(failures: Mapping[str, int], trials: int) -> Sheet:
+def failures_table(failures: Mapping[str, int], trials: int, invalid: int = 0) -> Sheet:
     """Return failures by kind.
 
     Args:
         failures: how often each kind of failure occurred, the commonest first.
-        trials: how many trials there were, the solved ones included.
+        trials: how many trials count, the solved ones included.
+        invalid: how many count for nothing.
     """
     table = Sheet(
         ("kind", "trials", "share of all trials"), title="Failures by kind", left=("kind",)
     )
     for kind, count in failures.items():
         table.add(kind, str(count), f"{100 * count / trials:.1f} %")
-    if not failures:
-        table.caption = f"no failures in {trials} trials"
+    notes = [] if failures else [f"no failures in {many(trials, 'trial')}"]
+    if invalid:
+        notes.append(f"{many(invalid, 'invalid trial')} left out: the simulation failed")
+    table.caption = "; ".join(notes)
     return table

@@ -13,7 +13,7 @@ from affcli.analysis.paper import GOALS, PLANNER, STARTS, TASK_SET, other_parts,
 from affcli.core.goal import Goal
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import TrialSpec
-from affcli.core.trial import Outcome, StepRecord, TrialEnd
+from affcli.core.trial import Outcome, StepRecord, TrialEnd, is_counted
 from affcli.report.sheet import Sheet
 from affcli.report.words import (
     call_words,
@@ -176,8 +176,9 @@ def solve_table(
         mine = {spec.start: end for spec, end in ends if spec.tool == tool}
         solved = sum(end.outcome is Outcome.SOLVED for end in mine.values())
         cells = [f"{mine[s].outcome} ({mine[s].steps})" if s in mine else "-" for s in starts]
+        tried = sum(is_counted(end.outcome) for end in mine.values())
         beside = f"{paper[tool]}/{STARTS}" if paper[tool] is not None else "-"
-        table.add(tool, *cells, f"{solved}/{len(mine)}", *((beside,) if compared else ()))
+        table.add(tool, *cells, f"{solved}/{tried}", *((beside,) if compared else ()))
     return table
 
 

@@ -14,10 +14,13 @@ from affcli.core.results import (
     TrialGroup,
 )
 from affcli.core.specs import Protocol
-from affcli.core.trial import Outcome
+from affcli.core.trial import Outcome, is_counted
 from affcli.store.connection import Database, tuples
 from affcli.store.reading import behavior_call, reading_what_was_written
 from affcli.store.tables import affordance, behavior, learning_run, step, trial
+
+COUNTED = [outcome.value for outcome in Outcome if is_counted(outcome)]
+"""How trials end that count."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,8 +65,7 @@ class Results:
                 sa.func.count(),
                 sa.func.sum(sa.case((t.outcome == Outcome.SOLVED.value, 1), else_=0)),
             )
-            .where(t.session_id == session_id, t.outcome.is_not(None))
-            .where(t.outcome != Outcome.INVALID.value)
+            .where(t.session_id == session_id, t.outcome.in_(COUNTED))
             .group_by(*cell)
             .order_by(*cell)
         )
@@ -82,7 +84,7 @@ class Results:
             return {Outcome(outcome): count for outcome, count in self._all(wanted)}
 
     def losses(self, session_id: int, protocol: Protocol) -> tuple[int, int]:
-        """Return what the trials of a protocol in a session made of the rows that they tried.
+        """Return what a session's trials of a protocol that count made of the rows they tried.
 
         Returns:
             How many tries were of rows whose affordance was truly lost; and how many rows fell to
@@ -94,6 +96,7 @@ class Results:
             sa.select(sa.func.coalesce(sa.func.sum(s.lost), 0), sa.func.count(excluded))
             .select_from(trial.join(step, s.trial_id == t.id))
             .where(t.session_id == session_id, t.protocol == protocol.value)
+            .where(t.outcome.in_(COUNTED))
         )
         ((lost, rows),) = self._all(wanted)
         return lost, rows
@@ -143,8 +146,7 @@ class Results:
             t.session_id == session_id,
             t.tool == tool,
             t.shape == shape,
-            t.outcome.is_not(None),
-            t.outcome != Outcome.INVALID.value,
+            t.outcome.in_(COUNTED),
         )
         key = t.robot if by_robot else t.id
         on_side = a.start_wrist_to_object_x * side > 0.0

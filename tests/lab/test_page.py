@@ -144,7 +144,7 @@ def test_an_interrupted_trial_is_shown_as_far_as_it_came(
     assert (replay.end, len(replay.steps), replay.differences) == (None, 2, ())
     page = render(content, "")
     assert "<td>interrupted</td><td>2</td>" in page
-    assert "this one has tried nothing yet" in page
+    assert "no trial of this one counts yet" in page
 
 
 def test_an_interrupted_trial_with_a_broken_tool_tells_nothing_of_it(

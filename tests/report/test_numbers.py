@@ -6,14 +6,19 @@ from dataclasses import replace
 import pytest
 
 from affcli.analysis.breaking import Tally, dead_rows
+from affcli.analysis.overview import breaking_of
 from affcli.analysis.paper import BROKEN as IN_PAPER
 from affcli.analysis.paper import EXTENSION_OF_REACH, GOALS, TOOLS, TOTAL
+from affcli.analysis.reproduction import failures_in
 from affcli.core.geometry import Point
-from affcli.report.breaking import broken_json
+from affcli.core.specs import Protocol
+from affcli.core.trial import Outcome
+from affcli.report.breaking import broken_json, broken_tables
 from affcli.report.learning import groups_json, run_json, summary
 from affcli.report.overview import overview_json, overview_tables
 from affcli.report.reproduction import reproduction_json
 from affcli.report.words import clock, settings_words, whole_degrees
+from tests.report.drawn import drawn
 from tests.report.hand_made import (
     BROKEN,
     FOUR_ROBOTS,
@@ -23,6 +28,7 @@ from tests.report.hand_made import (
     WHOLE,
     learned_run,
     session_of,
+    trial_info,
 )
 
 
@@ -50,6 +56,33 @@ def test_tally() -> None:
     assert Tally.of(BROKEN).mean_steps == 2.0
     assert Tally.of(BROKEN[2:]).mean_steps is None
     assert Tally.of(()) == Tally(0, 0, 0, 0, 0, 0, 0, 0)
+
+
+def test_trials_whose_simulation_failed_count_for_nothing() -> None:
+    failed = replace(BROKEN[1], end=replace(BROKEN[1].end, outcome=Outcome.INVALID))
+    counted = [BROKEN[0], BROKEN[2]]
+    assert Tally.of([*counted, failed]) == Tally.of(counted)
+    assert dead_rows([*counted, failed], 3.5) == dead_rows(counted, 3.5)
+    value = broken_json(RUNS[0], [failed, *counted, *WHOLE])
+    assert value["broken"]["trials"] == 2
+    assert drawn(broken_tables(RUNS[0], [failed]), 80)
+    ends = {Outcome.STEP_LIMIT: 2, Outcome.NO_ROW: 3, Outcome.INVALID: 4, Outcome.SOLVED: 5}
+    assert failures_in(ends) == ({"no row left": 3, "step limit": 2}, 10, 4)
+    assert failures_in({Outcome.INVALID: 4}) == ({}, 0, 4)
+    outcomes = (Outcome.SOLVED, Outcome.INVALID, Outcome.NO_ROW)
+    shape, protocol = "l-hook", Protocol.TOOL_ADAPTATION
+    ended = [
+        trial_info(
+            n, RUNS[0], "t-hook", "1", str(n), shape=shape, protocol=protocol, outcome=outcome
+        )
+        for n, outcome in enumerate(outcomes, 1)
+    ]
+    losses = dict.fromkeys(Protocol, (0, 0))
+    session = session_of(1, kind="break-tool")
+    found = breaking_of(session, ended, losses)
+    assert found is not None
+    assert (found.broken.solved, found.broken.trials) == (1, 2)
+    assert breaking_of(session, ended[1:2], losses) is None
 
 
 def test_dead_rows_and_their_side() -> None:

@@ -71,9 +71,12 @@ def test_whether_the_paper_s_table_is_reproduced() -> None:
 def test_one_robot_cannot_tell() -> None:
     failed = replay(spec(2), Outcome.STEP_LIMIT, step(1, ROWS[70]))
     unfinished = replay(spec(3), None, step(1, ROWS[70]))
+    otherwise = (Difference(0, "outcome", "step limit", "solved"),)
+    again = replace(WHOLE_TRIAL, differences=otherwise)
+    assert "It solved 0 of 1 trials" in answers.solved_by_one([again])
     said = answers.solved_by_one([WHOLE_TRIAL, failed, unfinished, *BROKEN_TRIALS])
     assert "It solved 1 of 2 trials with whole tools, " in said
-    assert "has tried nothing yet" in answers.solved_by_one([unfinished])
+    assert "no trial of this one counts yet" in answers.solved_by_one([unfinished])
 
 
 @given(rows=tables(), tool=st.sampled_from(list(TOOLS.values())))
@@ -262,4 +265,7 @@ def test_one_robot_s_trials_at_other_tasks_stand_in_a_row_of_their_own() -> None
         *["far-corners"] * 3,
     ]
     assert page.count("<td>far-corners</td>") == 3
+    assert "No failures" not in page
+    assert "Failures by kind, of 2 trials" in page
+    assert "Invalid trials: 1." in page
     assert '<th scope="col">tasks</th>' not in render(content(), COMMAND)

@@ -86,6 +86,7 @@ def test_trials_that_have_not_ended_or_are_invalid_are_left_out(
     unfinished_trial(store, session, run.id, trial_spec(1, 3, shape="l-hook", protocol=BROKEN))
     (group,) = store.results.trial_groups(session, "t-hook", "l-hook", RIGHT, by_robot=True)
     assert (group.trials, len(group.steps)) == (1, 1)
+    assert store.results.losses(session, BROKEN) == (1, 1)
 
 
 def test_a_trial_without_steps_counts_as_one(store: Store, run: LearningRunInfo) -> None:

@@ -19,7 +19,7 @@ from affcli.analysis.statistics import ENOUGH_ROBOTS, Spread
 from affcli.core.affordance import Affordance, is_probable
 from affcli.core.replay import Replay
 from affcli.core.specs import Protocol, TrialRecord
-from affcli.core.trial import Outcome
+from affcli.core.trial import Outcome, is_counted
 from affcli.errors import one_line
 from affcli.report.page.content import Broken, Content, LearnedRows
 from affcli.report.page.drawings import sector
@@ -74,10 +74,11 @@ def _sums(result: Reproduction) -> str:
 
 def solved_by_one(trials: Sequence[Replay]) -> str:
     """Return what one robot solved with whole tools."""
-    ended = [t for t in trials if t.spec.protocol is Protocol.EXTENSION_OF_REACH and t.end]
+    whole = [t for t in trials if t.spec.protocol is Protocol.EXTENSION_OF_REACH]
+    ended = [t for t in whole if is_counted(t.outcome)]
     if not ended:
-        return "One robot cannot tell, and this one has tried nothing yet: affcli solve --goal 1"
-    solved = sum(t.end.outcome is Outcome.SOLVED for t in ended if t.end)
+        return "One robot cannot tell, and no trial of this one counts yet: affcli solve --goal 1"
+    solved = sum(t.outcome is Outcome.SOLVED for t in ended)
     return (
         f"One robot cannot tell. It solved {solved} of {len(ended)} trials with whole tools, each "
         "from the table as it was then. For an answer with intervals: affcli reproduce --robots 20"

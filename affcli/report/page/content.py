@@ -28,7 +28,7 @@ class Broken:
 
     Args:
         learned: what was learned before.
-        trials: with what is left of the tool, all of which ended.
+        trials: with what is left of the tool, all of which count.
     """
 
     learned: LearnedRows

@@ -16,6 +16,7 @@ from affcli.analysis.paper import (
     TRIALS,
     row_name,
 )
+from affcli.analysis.reproduction import failures_in
 from affcli.analysis.statistics import ENOUGH_ROBOTS
 from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome
@@ -32,7 +33,6 @@ KINDS = {
     Outcome.NO_ROW.value: "every row was excluded, or asks for a place out of the arm's reach",
     Outcome.ATTRACTOR_OUT_OF_REACH.value: "the puck was pushed where the tool cannot reach it",
     Outcome.STEP_LIMIT.value: "still trying when its steps ran out; the paper names no limit",
-    Outcome.INVALID.value: "the simulation failed; the trial counts for nothing",
 }
 """How trials fail."""
 FEW = 3
@@ -109,16 +109,16 @@ def _results(content: Content) -> dict[str, Any]:
     single_goals, single = _single(content)
     shared = {"single": single, "single_goals": single_goals}
     if content.reproduction is None:
-        ends = Counter(r.end.outcome.value for r in content.replays if r.end is not None)
-        tried = ends.total()
-        del ends[Outcome.SOLVED.value]
+        ends = Counter(r.outcome for r in content.replays if r.outcome is not None)
+        failed = failures_in(ends)
         return {
             **shared,
             "result": None,
             "results_answer": answers.solved_by_one(content.replays),
             "enough": False,
-            "failures": ends.most_common(),
-            "failed_of": tried,
+            "failures": failed.kinds.items(),
+            "failed_of": failed.trials,
+            "invalid": failed.invalid,
         }
     result = reproduction_json(content.reproduction)
     by_tool: dict[str, dict[str, dict[str, Any]]] = defaultdict(dict)
@@ -133,6 +133,7 @@ def _results(content: Content) -> dict[str, Any]:
         "enough": content.reproduction.robots >= ENOUGH_ROBOTS,
         "failures": result["failures"].items(),
         "failed_of": result["trials"],
+        "invalid": result["invalid"],
     }
 
 
