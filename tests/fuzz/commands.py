@@ -145,6 +145,10 @@ class CommandLine:
     env: tuple[tuple[str, str], ...] = ()
 
 
+FOR_THE_SHELL = ("--install-completion", "--show-completion")
+"""Options that write into the home of whoever runs the tests, or ask which shell that is."""
+
+
 @cache
 def every_command() -> tuple[Command, ...]:
     """Return every command of the program, those of its groups too."""
@@ -155,7 +159,9 @@ def every_command() -> tuple[Command, ...]:
     def walk(listed: Any, words: tuple[str, ...]) -> None:
         command = listed if hasattr(listed, "commands") else listed.loaded()
         params = command.params
-        options = [p for p in params if p.param_type_name == "option"]
+        options = [
+            p for p in params if p.param_type_name == "option" and p.opts[0] not in FOR_THE_SHELL
+        ]
         found.append(
             Command(
                 words,
