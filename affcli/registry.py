@@ -157,7 +157,8 @@ def _named(kind: Kind, text: str) -> tuple[Part, dict[str, Value]]:
         UsageError: no such part.
         BadInputError: another form of text, or a version that is not here.
     """
-    given = Component.parse(text)
+    # What is no name either is told the names that there are.
+    given = Component.parse(text) if {":", "@"} & set(text) else Component(text)
     chosen = part(kind, given.name)
     if given.version not in (1, chosen.version):
         raise BadInputError(

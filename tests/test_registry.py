@@ -144,7 +144,13 @@ def test_another_version_of_a_part_is_refused(part: Part) -> None:
         registry.component(part.kind, f"{part.name}@{part.version + 1}")
 
 
-@pytest.mark.parametrize("text", ["", "Grasp", "grasp:", "grasp:angle", "grasp:angle=", "gr asp"])
+@pytest.mark.parametrize("text", ["", "Grasp", "gr asp"])
+def test_what_is_no_name_is_told_the_names_that_there_are(text: str) -> None:
+    with pytest.raises(UsageError, match="did you mean grasp"):
+        registry.component("bindings", text)
+
+
+@pytest.mark.parametrize("text", ["grasp:", "grasp:angle", "grasp:angle=", "gr asp:angle=1"])
 def test_what_is_no_part_as_text_is_refused_in_one_line(text: str) -> None:
     with pytest.raises(BadInputError, match="name:key=value") as told:
         registry.component("bindings", text)

@@ -148,7 +148,8 @@ def _checked_rows(
     """Return the names of the columns, and the rows one by one."""
     result = connection.execute(wanted)
     names = list(result.keys())
-    return names, (tuple(map(_checked, names, row)) for row in result)
+    # All at once: a statement that a check leaves half read would keep its lock.
+    return names, (tuple(map(_checked, names, row)) for row in result.all())
 
 
 def _checked(name: str, value: Any) -> Any:

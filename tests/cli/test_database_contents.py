@@ -109,7 +109,8 @@ def answers(database: Path) -> dict[str, str]:
         ended = affcli(*words, *(["--force"] if "OUT" in line else []), "--db", copy)
         assert ended.code in {0, 1, 2, 3, 4}, (line, ended)
         if ended.code in {2, 3, 4} and line != "db check":  # which tells what is wrong as a result
-            one_printable_line(ended.err)
+            # What could not be replayed is said before, a line for each reason.
+            one_printable_line(ended.err.splitlines(keepends=True)[-1])
         if not line.startswith("table export"):  # what is taken out is as it is
             assert "\x1b" not in ended.out + ended.err
         said[line] = ended.err if ended.code in {2, 3, 4} else ended.out + ended.err
