@@ -239,18 +239,19 @@ def _replay_all(store: "stores.Store", *, as_json: bool) -> int:
     if not trials:
         raise UsageError("no trials yet; first run: affcli solve --goal 1")
     differing: dict[int, str] = {}
-    prevented: dict[int, AffcliError] = {}
+    not_replayed: dict[int, str] = {}
+    kinds: list[type[AffcliError]] = []  # an error itself would keep what it has open
     with progress("replaying", len(trials)) as bar:
         for number, trial in enumerate(trials, 1):
             try:
                 again = lab.replaying.replay_trial(store, trial.id)
             except AffcliError as error:  # it names what is not here, or is damaged: others are not
-                prevented[trial.id] = error
+                not_replayed[trial.id] = str(error)
+                kinds.append(type(error))
             else:
                 if again.differences:
                     differing[trial.id] = verdict(len(again.steps), again.differences)
             bar(number, f"{number} of {len(trials)} trials")
-    not_replayed = {number: str(error) for number, error in prevented.items()}
     replayed = len(trials) - len(not_replayed)
     equal = replayed - len(differing)
     if as_json:
@@ -260,7 +261,7 @@ def _replay_all(store: "stores.Store", *, as_json: bool) -> int:
     _say_some([f"trial {number}: {differing[number]}" for number in sorted(differing)])
     _say_some(lines)
     if not replayed:
-        raise type(next(iter(prevented.values())))(last)
+        raise kinds[0](last)
     say(last)
     return 1 if equal < len(trials) else 0
 

@@ -197,7 +197,8 @@ def by_reason(not_replayed: Mapping[int, str]) -> dict[str, list[int]]:
 
 
 def all_words(equal: int, replayed: int, not_replayed: Mapping[int, str]) -> list[str]:
-    """Return what is said of a replay of all trials, last how many equal their record.
+    """Return what is said of a replay of all trials, last how many equal their record; one line
+    where none could be done.
 
     Args:
         equal: how many do.
@@ -212,12 +213,13 @@ def all_words(equal: int, replayed: int, not_replayed: Mapping[int, str]) -> lis
     grouped = by_reason(not_replayed)
     if len(grouped) == 1 and not replayed:
         return [f"{same}: {next(iter(grouped))}"]
-    named = (
-        f"trial{'s' * (len(numbers) > 1)} {_at_most(map(str, numbers), MOST_NUMBERS)} could not be "
-        f"replayed: {reason}"
+    named = [
+        (f"trial{'s' * (len(numbers) > 1)} {_at_most(map(str, numbers), MOST_NUMBERS)}", reason)
         for reason, numbers in grouped.items()
-    )
-    return [*named, same]
+    ]
+    if not replayed:
+        return [f"{same}: {_at_most((f'{reason} ({which})' for which, reason in named), 3)}"]
+    return [*(f"{which} could not be replayed: {reason}" for which, reason in named), same]
 
 
 def _differing(difference: Difference) -> str:
