@@ -96,13 +96,15 @@ def interrupted(store: Store) -> list[LearningSpec]:
         DatabaseError: one is not the run that its key stands for.
     """
     runs = store.learning.runs(status="running")
-    for run in runs:
-        if store.learning.find(run.spec) is None:
+    found = [store.learning.find(run.spec) for run in runs]
+    for run, same in zip(runs, found, strict=True):
+        if same is None:
             raise DatabaseError(
                 f"learning run {run.id} holds values that its key does not stand for; restore a "
                 "copy of the database"
             )
-    return [run.spec for run in runs]
+    # An older affcli could begin a run again beside one that it had interrupted.
+    return [same.spec for same in found if same is not None and same.status != "done"]
 
 
 def made_by_other_defaults(store: Store, spec: LearningSpec) -> tuple[AlikeRun, ...]:

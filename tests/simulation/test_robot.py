@@ -27,6 +27,7 @@ from affcli.core.behavior import (
 from affcli.core.geometry import Point, Pose
 from affcli.core.tool import ToolName
 from affcli.core.workspace import Workspace
+from affcli.errors import BadInputError
 from affcli.simulation.arm import joint_angles, reach_at
 from affcli.simulation.robot import SimulatedRobot
 from affcli.simulation.table_world import TableSetting
@@ -304,7 +305,7 @@ def test_the_robot_remembers_for_the_record_where_the_attractor_was_before_a_beh
 
 
 def test_a_behavior_that_the_robot_does_not_have_is_an_error() -> None:
-    with pytest.raises(KeyError, match="turn the wrist"):
+    with pytest.raises(BadInputError, match="turn the wrist 2: this robot has no such behavior"):
         setting_at(Point(0.0, 12.0)).robot.execute(
             call_of(BehaviorName("turn the wrist"), 2.0), None
         )
