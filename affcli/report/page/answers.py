@@ -23,6 +23,7 @@ from affcli.core.trial import Outcome, is_counted
 from affcli.errors import one_line
 from affcli.report.page.content import Broken, Content, LearnedRows
 from affcli.report.page.drawings import sector
+from affcli.report.replaying import by_reason
 from affcli.report.words import many
 
 MANY_ROBOTS = 40
@@ -163,10 +164,7 @@ def same(content: Content) -> str:
 
 def left_out(content: Content) -> list[str]:
     """Return which trials this affcli cannot do again, and why."""
-    by_reason: dict[str, list[int]] = {}
-    for number, reason in content.not_replayed.items():
-        by_reason.setdefault(reason, []).append(number)
     return [
         f"trial{'s' if len(numbers) > 1 else ''} {', '.join(map(str, numbers))} left out: {reason}"
-        for reason, numbers in by_reason.items()
+        for reason, numbers in by_reason(content.not_replayed).items()
     ]
