@@ -67,6 +67,7 @@ def demo(tmp_path_factory: pytest.TempPathFactory) -> Path:
     made = subprocess.run(
         [
             str(shutil.which("make")),
+            "--no-print-directory",  # which a make within `make test` would say
             "-f",
             ROOT / "Makefile",
             "-o",
