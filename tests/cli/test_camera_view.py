@@ -353,4 +353,4 @@ def test_numbers_that_no_record_has_are_bad_input(option: str, tmp_path: Path) -
 def test_a_stored_step_has_its_own_seed_and_settings(used: Path, tmp_path: Path) -> None:
     for own in (("--seed", "3"), ("--config", tmp_path / "x.toml")):
         line = refused(2, "camera", "view", "--db", used, "--trial", "1", "--out", "x.png", *own)
-        assert "leave out --seed and --config" in line
+        assert "leave out --seed, --config and --set" in line
