@@ -1,6 +1,7 @@
 """Parts by name: the one place where a name becomes a tool, a behavior, a planner, a world.
 
-A part is found by the tuple PARTS of a file in its room: adding one is adding a file.
+A part is found by the tuple PARTS of a file in its room: adding one is adding a file. A sensor is
+made by `simulation.sensing`, which must know it, too.
 """
 
 import pkgutil
