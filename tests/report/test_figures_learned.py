@@ -84,7 +84,7 @@ def test_a_row_says_what_the_robot_keeps_of_it(used: int, successful: int) -> No
     )
     figure = row_figure(RowView(row, T_HOOK, 1.5))
     said = "\n".join(texts(figure))
-    for words in ("Contract arm\n5 in", "Grasp, 1 in\n+ grasp point"):
+    for words in ("Contract arm\n5 in", "Grasp, 1 in\nthe cross is the grasp point"):
         assert words in said
     assert "attractor (0.0, 22.4)" in said
     assert "attractor (0.0, 19.4)" in said

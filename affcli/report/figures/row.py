@@ -56,7 +56,7 @@ def row_figure(view: RowView) -> Figure:
             axes.spines["top"].set(visible=True, linewidth=0.5)
         grasping, behavior, before, after, probability = cells
         _draw_tool(grasping, view, Pose(0.0, 0.0))
-        _write_below(grasping, call_words(row.binding), "+ grasp point")
+        _write_below(grasping, call_words(row.binding), "the cross is the grasp point")
         _write(behavior, behavior_words(row.exploratory), parameter_words(row.exploratory))
         if row.truncated:
             _write_below(behavior, "cut short: it met the", "edge of the reach")
