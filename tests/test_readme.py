@@ -229,7 +229,7 @@ def test_every_option_of_a_command_is_in_its_row_or_shared(words: tuple[str, ...
 def test_every_query_finds_something_after_the_demo(readme: str, demo: Path) -> None:
     for query in blocks(readme, "sql"):
         found = done("sql", query, "--json", "--db", demo / "demo.db")
-        assert found.json, query
+        assert found.results, query
         assert found.err == ""
 
 

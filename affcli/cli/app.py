@@ -8,7 +8,7 @@ from typer.core import TyperCommand, TyperGroup
 
 from affcli import __version__
 from affcli.cli.commands import SECTIONS, Command, Group
-from affcli.cli.terminal import show_text
+from affcli.cli.terminal import answer_as, show_text
 from affcli.errors import UsageError
 
 
@@ -34,7 +34,9 @@ class LazyCommand(TyperCommand):
 
     def make_context(self, *args: Any, **kwargs: Any) -> Any:
         """Make the context of the imported command."""
-        return self.loaded().make_context(*args, **kwargs)
+        context = self.loaded().make_context(*args, **kwargs)
+        answer_as(context.command_path.removeprefix("affcli "))
+        return context
 
 
 class CommandGroup(TyperGroup):

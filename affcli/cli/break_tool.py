@@ -54,7 +54,7 @@ def break_tool(
                 bar(share, f"{len(trials)} trials")
     show_either(
         as_json=as_json,
-        value=lambda: {"run": used.id, "trials": numbers, **broken_json(used, trials)},
+        results=lambda: [{"run": used.id, "trials": numbers, **broken_json(used, trials)}],
         tables=lambda: broken_tables(used, trials),
     )
     tried_in_vain = [

@@ -122,7 +122,7 @@ def calibrate(
         say(f"the calibration is in {one_line(out)}")
     show_either(
         as_json=as_json,
-        value=lambda: values,
+        results=lambda: [values],
         tables=lambda: calibration_tables(values, found.camera.position, found.camera.tilt_degrees),
     )
 

@@ -42,6 +42,6 @@ def locate(
     places = lab.photographs.locate_in_picture(image, calibration, colors)
     show_either(
         as_json=as_json,
-        value=lambda: places_json(places),
+        results=lambda: places_json(places),
         tables=lambda: [places_table(places)],
     )

@@ -68,7 +68,7 @@ def info(*, database: Database = DEFAULT_DATABASE, as_json: AsJson = False) -> N
     found = asdict(store.database_info(database))
     facts = {**found, "path": str(database)}
     if as_json:
-        show_json(facts)
+        show_json([facts])
         return
     counts: dict[str, int] = facts.pop("counts")
     names = (*(name.replace("_", " ") for name in facts), *counts)

@@ -94,7 +94,7 @@ def learn(
         found, stuck = _learn_all(store, specs, all_or_none=bool(names))
     show_either(
         as_json=as_json,
-        value=lambda: [
+        results=lambda: [
             {**run_json(learned.info), "new": learned.new, "groups": groups_json(group)}
             for learned, group in found
         ],

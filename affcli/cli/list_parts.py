@@ -27,6 +27,6 @@ def list_parts(
     found = {one: registry.parts(one) for one in registry.KINDS if one in wanted}
     show_either(
         as_json=as_json,
-        value=lambda: parts_json(found),
+        results=lambda: parts_json(found),
         tables=lambda: list(parts_tables(found)),
     )

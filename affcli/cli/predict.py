@@ -51,6 +51,6 @@ def predict(
     }
     show_either(
         as_json=as_json,
-        value=lambda: {**about, "scores": prediction_json(done)},
+        results=lambda: [{**about, "scores": prediction_json(done)}],
         tables=lambda: prediction_tables(f"Run {used.id}, {spec.tool}", RADIUS, done),
     )

@@ -146,7 +146,7 @@ def _replay_trial(
     if gif is not None:
         _film(again, numbers, speed or 1.0, gif)
     if as_json:
-        show_json(replay_json(again, numbers))
+        show_json([replay_json(again, numbers)])
     elif gif is None and numbers:
         braille = shows_braille()
         steps = (trial_frames(again, number, braille=braille) for number in numbers)
@@ -224,7 +224,7 @@ def _replay_run(
             for behavior in noted():
                 bar(behavior.record.step, f"behavior {behavior.record.step}")
     if as_json:
-        show_json({"run": run, "behaviors": done, **differences_json(differences)})
+        show_json([{"run": run, "behaviors": done, **differences_json(differences)}])
     say(f"run {run}: {verdict(done, differences, 'behavior', info.behaviors)}")
     return 1 if differences else 0
 
@@ -255,8 +255,14 @@ def _replay_all(store: "stores.Store", *, as_json: bool) -> int:
     replayed = len(trials) - len(not_replayed)
     equal = replayed - len(differing)
     if as_json:
-        found = {"trials": len(trials), "equal": equal, "differing": differing}
-        show_json({**found, "not_replayed": not_replayed})
+        show_json(
+            {
+                "trial": trial.id,
+                "equal": None if trial.id in not_replayed else trial.id not in differing,
+                "why": not_replayed.get(trial.id, differing.get(trial.id)),
+            }
+            for trial in trials
+        )
     *lines, last = all_words(equal, replayed, not_replayed)
     _say_some([f"trial {number}: {differing[number]}" for number in sorted(differing)])
     _say_some(lines)

@@ -64,7 +64,7 @@ def _on_terminal(database: Path, *, as_json: bool) -> None:
         overview = lab.overview.overview_of(store)
     show_either(
         as_json=as_json,
-        value=lambda: overview_json(overview),
+        results=lambda: [overview_json(overview)],
         tables=lambda: overview_tables(overview),
     )
 

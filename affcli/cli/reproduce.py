@@ -105,6 +105,6 @@ def reproduce(
     say(f"session {session}: {robots} robots, seed {what.seed}, saved in {database}")
     show_either(
         as_json=as_json,
-        value=lambda: reproduction_json(result),
+        results=lambda: [reproduction_json(result)],
         tables=lambda: reproduction_tables(result),
     )

@@ -62,7 +62,7 @@ def solve(
     used = {one.spec.tool: one for one in runs}
     show_either(
         as_json=as_json,
-        value=lambda: [
+        results=lambda: [
             {"trial": one.id, "run": used[one.trial.tool].id}
             | trial_json(one.trial, one.end, one.steps if explain else None)
             for one in trials

@@ -33,4 +33,8 @@ def show_row(
         tries = store.verifications.of_row(row_id)
     region = region_of(run.spec.held, stored.row)
     found = (stored, region, run, history, tries)
-    show_either(as_json=as_json, value=lambda: row_json(*found), tables=lambda: row_tables(*found))
+    show_either(
+        as_json=as_json,
+        results=lambda: [row_json(*found)],
+        tables=lambda: row_tables(*found),
+    )

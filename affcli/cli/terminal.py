@@ -14,14 +14,17 @@ from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 from affcli.errors import AffcliError, one_line
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from rich.console import Console, RenderableType
 
 
 T = TypeVar("T")
+JSON_FORMAT = 1
+"""Of what `show_json` writes: raised when a key gets another name or meaning, or is no more."""
 NARROWEST = 20
 """A terminal of fewer columns is written to as if it had these."""
+_command = ""
 
 
 def prepare_streams() -> None:
@@ -70,22 +73,34 @@ def show_text(text: str) -> None:
     _write(sys.stdout, text)
 
 
-def show_json(value: Any) -> None:
-    """Write JSON to stdout, as any reader knows it (see `report.json_table.plain`)."""
+def answer_as(command: str) -> None:
+    """Name the command that is run, for what it answers in JSON."""
+    global _command  # noqa: PLW0603  # a process runs one
+    _command = command
+
+
+def show_json(results: "Iterable[Mapping[str, Any]]") -> None:
+    """Write the results of the command to stdout as JSON, all commands in one shape.
+
+    Args:
+        results: one for each thing that was asked for; any reader knows their values (see
+            `report.json_table.plain`).
+    """
     from affcli.report.json_table import plain
 
-    show_text(json.dumps(plain(value), indent=2) + "\n")
+    answer = {"command": _command, "format": JSON_FORMAT, "results": plain(list(results))}
+    show_text(json.dumps(answer, indent=2) + "\n")
 
 
 def show_either(
     *,
     as_json: bool,
-    value: "Callable[[], Any]",
+    results: "Callable[[], Iterable[Mapping[str, Any]]]",
     tables: "Callable[[], Iterable[RenderableType]]",
 ) -> None:
-    """Write a result to stdout: its value as JSON, or its tables."""
+    """Write results to stdout: as JSON, or their tables."""
     if as_json:
-        show_json(value())
+        show_json(results())
     else:
         show(*tables())
 

@@ -64,6 +64,6 @@ def verify(
     found = Verification(used.id, spec, used.rows, update, tuple(tries))
     show_either(
         as_json=as_json,
-        value=lambda: verification_json(found),
+        results=lambda: [verification_json(found)],
         tables=lambda: verification_tables(found),
     )

@@ -29,7 +29,7 @@ def broken_json(run: LearningRunInfo, trials: Sequence[TrialRecord]) -> dict[str
         }
     value["excluded_rows"] = [
         {
-            "row": dead.row.step,
+            "step": dead.row.step,
             "behavior": str(dead.row.exploratory),
             "on_missing_side": dead.on_missing_side,
             "lost": dead.lost,

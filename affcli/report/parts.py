@@ -27,28 +27,27 @@ def parts_tables(registered: Registered) -> Iterator[Sheet]:
             yield params
 
 
-def parts_json(registered: Registered) -> dict[str, list[dict[str, Any]]]:
+def parts_json(registered: Registered) -> list[dict[str, Any]]:
     """Return the same as JSON types."""
-    return {
-        kind: [
-            {
-                "name": part.name,
-                "version": part.version,
-                "summary": part.summary,
-                "source": part.source,
-                "parameters": [
-                    {
-                        "name": key,
-                        "default": one.default,
-                        "unit": one.unit or None,
-                        "low": one.low,
-                        "high": one.high,
-                        "meaning": one.meaning,
-                    }
-                    for key, one in part.params.items()
-                ],
-            }
-            for part in parts.values()
-        ]
+    return [
+        {
+            "kind": kind,
+            "name": part.name,
+            "version": part.version,
+            "summary": part.summary,
+            "source": part.source,
+            "parameters": [
+                {
+                    "name": key,
+                    "default": one.default,
+                    "unit": one.unit or None,
+                    "low": one.low,
+                    "high": one.high,
+                    "meaning": one.meaning,
+                }
+                for key, one in part.params.items()
+            ],
+        }
         for kind, parts in registered.items()
-    }
+        for part in parts.values()
+    ]

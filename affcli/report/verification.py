@@ -141,8 +141,8 @@ def verification_json(found: Verification) -> dict[str, Any]:
         "by_region": [one._asdict() for one in shares(found.of_live_rows, lambda one: one.region)],
         "drifted": [
             {
-                "affordance": one.affordance_id,
-                "row": one.record.row.step,
+                "row": one.affordance_id,
+                "step": one.record.row.step,
                 "behavior": str(one.call),
                 "region": one.region,
                 "placing": one.record.placing.status.value,

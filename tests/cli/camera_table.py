@@ -28,7 +28,7 @@ def located(*args: Arg, cwd: Path) -> dict[str, dict[str, Any]]:
     """Return what ``locate`` finds on the table, by name."""
     ended = done("camera", "locate", "table.png", *args, "--json", cwd=cwd)
     assert ended.err == ""
-    return {seen["name"]: seen for seen in ended.json}
+    return {seen["name"]: seen for seen in ended.results}
 
 
 def place(seen: dict[str, Any]) -> tuple[float, float]:

@@ -49,6 +49,21 @@ class Ended:
 
         return json.loads(self.out, parse_constant=refuse)
 
+    @property
+    def results(self) -> list[dict[str, Any]]:
+        """What a command with --json answered, in the shape that all answers have."""
+        answer = self.json
+        assert list(answer) == ["command", "format", "results"]
+        assert answer["format"] == 1
+        results: list[dict[str, Any]] = answer["results"]
+        return results
+
+    @property
+    def result(self) -> dict[str, Any]:
+        """The one thing that it answered."""
+        (result,) = self.results
+        return result
+
 
 def environment(**changes: str) -> dict[str, str]:
     """Return this process's environment without what changes the program's looks or database."""

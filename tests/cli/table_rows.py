@@ -39,5 +39,5 @@ def vary_counters(database: Path) -> None:
 
 def listed(database: Path, *args: Arg) -> list[dict[str, Any]]:
     """Return what ``table list`` gives."""
-    found: list[dict[str, Any]] = done("table", "list", *args, "--json", "--db", database).json
+    found: list[dict[str, Any]] = done("table", "list", *args, "--json", "--db", database).results
     return found

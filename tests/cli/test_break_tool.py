@@ -46,7 +46,7 @@ def test_every_trial_starts_from_the_table_as_learned(learned: Path) -> None:
 
 
 def test_json_counts_what_is_stored(learned: Path) -> None:
-    value = done("break-tool", "--seed", "3", "--json", "--db", learned).json
+    value = done("break-tool", "--seed", "3", "--json", "--db", learned).result
     assert (value["becomes"], value["paper"]) == ("l-hook", 16)
     for name, protocol in (("broken", "tool adaptation"), ("whole", "extension of reach")):
         of_trials = f"SELECT {', '.join(TALLY.values())} FROM trial WHERE protocol = '{protocol}'"
@@ -63,7 +63,7 @@ def test_json_counts_what_is_stored(learned: Path) -> None:
     died = """SELECT affordance.step, count(DISTINCT trial_id) FROM step
         JOIN trial ON trial.id = trial_id JOIN affordance ON affordance.id = affordance_id
         WHERE died AND protocol = 'tool adaptation' GROUP BY 1 ORDER BY 1"""
-    excluded = [(row["row"], row["trials"]) for row in value["excluded_rows"]]
+    excluded = [(row["step"], row["trials"]) for row in value["excluded_rows"]]
     assert excluded == rows(learned, died)
 
 

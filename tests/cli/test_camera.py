@@ -48,7 +48,7 @@ def folder(shared: Path, tmp_path: Path) -> Path:
 
 def calibrated(*args: Arg, cwd: Path) -> dict[str, Any]:
     """Return what ``calibrate`` gives."""
-    value: dict[str, Any] = done("camera", "calibrate", *args, "--json", cwd=cwd).json
+    value: dict[str, Any] = done("camera", "calibrate", *args, "--json", cwd=cwd).result
     return value
 
 
@@ -59,7 +59,7 @@ def test_what_a_picture_of_the_pattern_gives_finds_what_is_on_the_table(tmp_path
     calibrate = ("camera", "calibrate", "p.png", *AS_IT_LIES, "--out", "cal.json", "--json")
     ended = done(*calibrate, cwd=tmp_path)
     assert ended.err == "the calibration is in cal.json\n"
-    assert json.loads((tmp_path / "cal.json").read_text()) == ended.json
+    assert json.loads((tmp_path / "cal.json").read_text()) == ended.result
     done("camera", "view", "--frame", "--out", "table.png", cwd=tmp_path)
     seen = located("--calibration", "cal.json", cwd=tmp_path)
     for name, truth in ON_TABLE.items():

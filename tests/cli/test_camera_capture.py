@@ -83,7 +83,7 @@ def found(folder: Path) -> dict[str, tuple[float, float]]:
 
 
 def positions(ended: Ended) -> dict[str, tuple[float, float]]:
-    named = {one["name"]: one for one in ended.json}
+    named = {one["name"]: one for one in ended.results}
     return {name: place(named[name]) for name in ("puck", "wrist")}
 
 

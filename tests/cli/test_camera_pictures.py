@@ -62,7 +62,7 @@ def calibrated(path: Path) -> dict[str, Any]:
     """Return what a picture of the pattern gives."""
     ended = done("camera", "calibrate", path, *AS_IT_LIES, "--json")
     assert ended.err == ""
-    value: dict[str, Any] = ended.json
+    value: dict[str, Any] = ended.result
     return value
 
 

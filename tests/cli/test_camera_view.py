@@ -50,7 +50,7 @@ def view(*args: Arg) -> str:
 
 def seen_in(picture: Path, calibration: Path) -> dict[str, list[dict[str, Any]]]:
     """Return what is where in a picture, by name."""
-    found = done("camera", "locate", picture, "--calibration", calibration, "--json").json
+    found = done("camera", "locate", picture, "--calibration", calibration, "--json").results
     return {seen["name"]: seen["places"] for seen in found}
 
 

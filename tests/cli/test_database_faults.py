@@ -140,7 +140,7 @@ def test_every_other_command_refuses_another_programs_file(name: str, learned: P
 
 def test_db_info_says_which_revision_a_newer_file_has(learned: Path) -> None:
     from_the_future(learned)
-    info = done("db", "info", "--json", "--db", learned).json
+    info = done("db", "info", "--json", "--db", learned).result
     assert (info["revision"], info["code_revision"]) == ("0099", REVISION)
 
 
@@ -180,7 +180,7 @@ def test_a_path_of_no_character_is_shown_escaped(tmp_path: Path) -> None:
     name = b"\xff.db"
     done(*MAKING["learn"], "--db", name, cwd=tmp_path)
     assert "\\udcff.db" in done("db", "info", "--db", name, cwd=tmp_path).out
-    assert done("db", "info", "--db", name, "--json", cwd=tmp_path).json["path"] == "\udcff.db"
+    assert done("db", "info", "--db", name, "--json", cwd=tmp_path).result["path"] == "\udcff.db"
     assert [os.fsencode(path.name) for path in tmp_path.iterdir()] == [name]
 
 
@@ -201,7 +201,7 @@ def test_db_upgrade_says_that_there_is_nothing_to_do(learned: Path) -> None:
 
 
 def test_db_info_counts_what_is_there(learned: Path) -> None:
-    info = done("db", "info", "--json", "--db", learned).json
+    info = done("db", "info", "--json", "--db", learned).result
     assert info["bytes"] == learned.stat().st_size
     counts = info["counts"]
     assert (counts["learning runs"], counts["behaviors"], counts["trials"]) == (2, 1600, 0)

@@ -75,7 +75,7 @@ def test_a_trial_that_diverges_is_invalid_and_no_success(number: str, learned: P
 def test_no_report_counts_it(learned: Path) -> None:
     diverging("nan", 0, *SOLVE, "--db", learned)
     assert rows(learned, "SELECT DISTINCT outcome, count(*) FROM trial") == [("invalid", 4)]
-    told = done("report", "--json", "--db", learned).json
+    told = done("report", "--json", "--db", learned).result
     assert (told["solved"], told["trials"], told["failures"]) == ([], 0, {})
     assert told["invalid"] == 4
     shown = done("report", "--db", learned).out
@@ -93,7 +93,7 @@ def test_a_robot_of_a_reproduction_goes_on_with_its_other_trials(
     """One push of some trial with the first tool diverges."""
     database = tmp_path / "my.db"
     command = ("reproduce", "--robots", "1", "--workers", "1", "--config", leisurely)
-    told = diverging("nan", 40, *command, "--json", "--db", database, times=1).json
+    told = diverging("nan", 40, *command, "--json", "--db", database, times=1).result
     outcomes = "SELECT count(*), sum(outcome = 'solved'), sum(outcome = 'invalid') FROM trial"
     ((trials, solved, invalid),) = rows(database, outcomes)
     assert (trials, invalid, told["invalid"]) == (96, 1, 1)

@@ -14,7 +14,7 @@ OLD = Path(__file__).parents[1] / "store" / "databases" / "0001.db"
 
 
 def test_the_doctor_tells_what_is_here(learned: Path) -> None:
-    found = {fact["what"]: fact for fact in done("doctor", "--db", learned, "--json").json}
+    found = {fact["what"]: fact for fact in done("doctor", "--db", learned, "--json").results}
     assert found["packages"]["value"].startswith("numpy 2")
     assert {fact["state"] for fact in found.values()} == {"ok"}
     shown = done("doctor", "--db", learned, COLUMNS="40").out
@@ -30,7 +30,7 @@ def test_the_doctor_points_out_a_write_ahead_log_that_is_not_safe_here(learned: 
     with closing(sqlite3.connect(learned)) as driver:
         driver.execute("PRAGMA journal_mode = wal")
         ended = done("doctor", "--db", learned, "--json")
-    (fact,) = (fact for fact in ended.json if fact["what"] == "database")
+    (fact,) = (fact for fact in ended.results if fact["what"] == "database")
     assert (fact["state"], "journal mode wal" in fact["value"]) == ("look", True)
     assert "one process at a time" in fact["remedy"]
     done("learn", "--tool", "l-stick", "--behaviors", "5", "--db", learned)
@@ -86,7 +86,7 @@ def test_a_backup_is_made_beside_the_database_and_never_over_something(learned: 
 
 def test_check_ends_with_3_when_something_is_wrong(learned: Path) -> None:
     assert all(
-        finding["wrong"] == 0 for finding in done("db", "check", "--db", learned, "--json").json
+        finding["wrong"] == 0 for finding in done("db", "check", "--db", learned, "--json").results
     )
     driver = sqlite3.connect(learned, isolation_level=None)
     driver.execute("update affordance set times_used = 7 where id = 1")

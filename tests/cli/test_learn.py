@@ -12,7 +12,7 @@ SHORT = ("learn", "--tool", "stick", "--behaviors", "60")
 
 def json_of(*args: str | Path) -> list[dict[str, object]]:
     """Return what a successful ``learn`` gives as JSON."""
-    value: list[dict[str, object]] = done(*args, "--json").json
+    value: list[dict[str, object]] = done(*args, "--json").results
     return value
 
 

@@ -13,7 +13,8 @@ FEW = ("learn", "--tool", "stick", "--behaviors", "20")
 
 @pytest.mark.parametrize("kind", registry.KINDS)
 def test_a_kind_is_listed_with_each_of_its_parts(kind: str, tmp_path: Path) -> None:
-    listed = done("list", kind, "--json", cwd=tmp_path).json[kind]
+    listed = done("list", kind, "--json", cwd=tmp_path).results
+    assert {one["kind"] for one in listed} == {kind}
     known = next(registry.parts(one) for one in registry.KINDS if one == kind)
     assert [one["name"] for one in listed] == list(known)
     assert all(one["summary"] and one["source"] for one in listed)
@@ -23,9 +24,9 @@ def test_a_kind_is_listed_with_each_of_its_parts(kind: str, tmp_path: Path) -> N
 
 
 def test_parameters_are_listed_with_default_unit_and_limits() -> None:
-    everything = done("list", "--json").json
-    assert list(everything) == list(registry.KINDS)
-    planner = next(one for one in everything["planners"] if one["name"] == "nested-query")
+    everything = done("list", "--json").results
+    assert list(dict.fromkeys(one["kind"] for one in everything)) == list(registry.KINDS)
+    planner = next(one for one in everything if one["name"] == "nested-query")
     angle = next(one for one in planner["parameters"] if one["name"] == "angle_degrees")
     assert (angle["default"], angle["unit"]) == (40, "degrees")
     assert (angle["low"], angle["high"]) == (1, 180)
@@ -87,7 +88,7 @@ def test_a_run_carries_its_parts_and_is_shown_with_them(tmp_path: Path) -> None:
         *("--binding", "grasp:angle=20", "--explorer", "random", "--world", "table"),
         *("--repertoire", "extend-arm:offset_distance=3", "--repertoire", "slide-arm-left"),
     )
-    (said,) = done(*FEW, *parts, "--json", "--db", database).json
+    (said,) = done(*FEW, *parts, "--json", "--db", database).results
     assert said["explorer"] == "random"
     assert "20" in said["binding"]
     assert said["repertoire"] == ["extend arm 3", "slide arm left 5"]
@@ -110,13 +111,13 @@ def test_runs_of_one_tool_are_told_apart_by_their_number(learned: Path) -> None:
     learn = ("learn", "--tool", "t-hook", "--behaviors", "60", "--binding", "grasp:angle=10")
     done(*learn, "--db", learned)
     one = ("solve", "--goal", "2", "--tool", "t-hook")
-    assert {trial["run"] for trial in done(*one, "--json", "--db", learned).json} == {3}
+    assert {trial["run"] for trial in done(*one, "--json", "--db", learned).results} == {3}
     named = ("solve", "--goal", "2", "--run", "1", "--json")
-    assert {trial["run"] for trial in done(*named, "--db", learned).json} == {1}
-    assert done("break-tool", "--run", "1", "--json", "--db", learned).json["run"] == 1
-    assert done("verify", "--run", "1", "--rows", "2", "--json", "--db", learned).json["run"] == 1
+    assert {trial["run"] for trial in done(*named, "--db", learned).results} == {1}
+    assert done("break-tool", "--run", "1", "--json", "--db", learned).result["run"] == 1
+    assert done("verify", "--run", "1", "--rows", "2", "--json", "--db", learned).result["run"] == 1
     predict = ("predict", "--run", "1", "--pushes", "2", "--json")
-    assert done(*predict, "--db", learned).json["run"] == 1
+    assert done(*predict, "--db", learned).result["run"] == 1
 
 
 def test_trials_by_two_planners_are_kept_beside_each_other_and_done_again(learned: Path) -> None:
@@ -127,7 +128,7 @@ def test_trials_by_two_planners_are_kept_beside_each_other_and_done_again(learne
     kept = rows(learned, "SELECT planner, count(*) FROM trial GROUP BY planner ORDER BY 1")
     assert kept == [("nested-query", 4), ("nested-query:share=0.05", 4)]
     assert done("replay", "--all", "--db", learned).err.startswith("8 of 8 trials equal ")
-    replayed = done("replay", "1", "--json", "--db", learned).json
+    replayed = done("replay", "1", "--json", "--db", learned).result
     assert replayed["planner"] == "nested-query:share=0.05"
     assert replayed["steps"][0]["reasons"]
     assert "nested-query:share=0.05" in done("replay", "1", "--db", learned).out

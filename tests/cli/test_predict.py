@@ -16,7 +16,7 @@ def test_the_scores_of_a_growing_table_are_told_and_nothing_is_written(learned: 
     ended = done(*predict(learned, "--pushes", "300"))
     assert ended.err == ""
     assert ended.out.startswith("Run 1, t-hook: what it predicts of 300 fresh pushes, ")
-    value = done(*predict(learned, "--pushes", "300", "--json")).json
+    value = done(*predict(learned, "--pushes", "300", "--json")).result
     ((in_table,),) = rows(learned, "SELECT rows FROM learning_run WHERE tool = 't-hook'")
     assert [score["rows"] for score in value["scores"]] == [5, 10, 20, 40, 80, in_table]
     for score in value["scores"]:
@@ -35,8 +35,8 @@ def test_the_scores_of_a_growing_table_are_told_and_nothing_is_written(learned: 
 
 def test_the_same_seed_says_the_same_and_another_something_else(learned: Path) -> None:
     args = predict(learned, "--pushes", "60", "--json")
-    assert done(*args).json == done(*args).json
-    assert done(*args).json["scores"] != done(*args, "--seed", "8").json["scores"]
+    assert done(*args).result == done(*args).result
+    assert done(*args).result["scores"] != done(*args, "--seed", "8").result["scores"]
 
 
 def test_excluded_rows_foretell_nothing(learned: Path) -> None:
@@ -46,7 +46,7 @@ def test_excluded_rows_foretell_nothing(learned: Path) -> None:
         " AND 2 * times_successful > times_used"
     )
     ((count,),) = rows(learned, live)
-    value = done(*predict(learned, "--pushes", "20", "--json")).json
+    value = done(*predict(learned, "--pushes", "20", "--json")).result
     assert value["scores"][-1]["rows"] == count
 
 

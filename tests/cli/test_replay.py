@@ -106,7 +106,7 @@ def test_the_json_is_what_sql_says_of_the_steps(used: Path) -> None:
     for trial in (SOLVED, *(number for (number,) in broken[:4])):
         ended = done("replay", str(trial), "--json", "--db", used)
         assert ended.err == same(trial, used)
-        found = ended.json
+        found = ended.result
         columns = ("tool", "shape", "goal", "start", "outcome")
         (stored,) = rows(used, f"SELECT {', '.join(columns)} FROM trial WHERE id = {trial}")
         assert tuple(found[name] for name in columns) == stored
@@ -118,8 +118,8 @@ def test_the_json_is_what_sql_says_of_the_steps(used: Path) -> None:
 
 
 def test_the_json_of_some_steps_holds_them_alone(used: Path) -> None:
-    whole = done("replay", SOLVED, "--json", "--db", used).json
-    some = done("replay", SOLVED, "--steps", "2-3", "--json", "--db", used).json
+    whole = done("replay", SOLVED, "--json", "--db", used).result
+    some = done("replay", SOLVED, "--steps", "2-3", "--json", "--db", used).result
     assert some == {**whole, "steps": whole["steps"][1:3]}
 
 
@@ -128,7 +128,7 @@ def test_all_trials_are_what_their_record_says(used: Path) -> None:
     says = "40 of 40 trials equal their record in every step\n"
     assert done("replay", "--all", "--db", used) == Ended(0, "", says)
     ended = done("replay", "--all", "--json", "--db", used)
-    assert ended.json == {"trials": 40, "equal": 40, "differing": {}, "not_replayed": {}}
+    assert ended.results == [{"trial": n, "equal": True, "why": None} for n in range(1, 41)]
     assert ended.err == says
 
 
@@ -138,7 +138,7 @@ def test_a_learning_run_is_what_its_record_says(reproduced: Path) -> None:
     says = f"run 7: the replay equals the record, all {count} behaviors\n"
     assert done("replay", "--run", "7", "--db", reproduced) == Ended(0, "", says)
     ended = done("replay", "--run", "7", "--json", "--db", reproduced)
-    assert ended.json == {"run": 7, "behaviors": count, "equal": True, "differences": []}
+    assert ended.result == {"run": 7, "behaviors": count, "equal": True, "differences": []}
 
 
 def test_behaviors_of_a_run_are_shown_alone(learned: Path) -> None:
@@ -188,7 +188,7 @@ def test_an_interrupted_trial_is_done_as_far_as_it_came(
     ended = done("replay", str(trial), "--db", learned)
     assert ended.err == f"trial 1 was interrupted; the replay equals the record, {says}\n"
     assert titles_in(ended.out) == list(range(1, steps + 1))
-    assert done("replay", str(trial), "--json", "--db", learned).json["outcome"] is None
+    assert done("replay", str(trial), "--json", "--db", learned).result["outcome"] is None
     assert done("replay", "--all", "--db", learned).err.startswith("1 of 1 trials equal ")
 
 
@@ -200,7 +200,7 @@ def test_a_trial_without_steps_shows_the_table(learned: Path) -> None:
     assert ended.err == "trial 1 ended: no row left; the replay equals the record, no steps\n"
     assert ended.out.startswith("Trial 1, no steps: l-hook, goal 1, start 1\n")
     assert any(ord(letter) in BRAILLE for letter in ended.out)
-    assert done("replay", "1", "--json", "--db", learned).json["steps"] == []
+    assert done("replay", "1", "--json", "--db", learned).result["steps"] == []
     line = refused(2, "replay", "1", "--steps", "1", "--db", learned)
     assert line.endswith("no step 1 in trial 1; it has none")
 
@@ -259,8 +259,8 @@ def test_a_record_that_was_changed_is_exit_code_1_and_named(
     assert len(line) < 400
     found = affcli("replay", SOLVED, "--json", "--db", used)
     assert found.code == 1
-    assert found.json["equal"] is False
-    assert found.json["differences"][0].keys() == {"number", "column", "stored", "again"}
+    assert found.result["equal"] is False
+    assert found.result["differences"][0].keys() == {"number", "column", "stored", "again"}
     every = affcli("replay", "--all", "--db", used)
     assert every.code == 1
     said = every.err.splitlines()
@@ -277,8 +277,9 @@ def test_of_many_that_differ_some_are_named(used: Path) -> None:
         "and 20 more; --json names them all",
         "0 of 40 trials equal their record in every step",
     ]
-    found = affcli("replay", "--all", "--json", "--db", used).json
-    assert (found["trials"], found["equal"], len(found["differing"])) == (40, 0, 40)
+    found = affcli("replay", "--all", "--json", "--db", used).results
+    assert [one["equal"] for one in found] == [False] * 40
+    assert all(one["why"].startswith("the replay DIFFERS from the record in ") for one in found)
 
 
 def test_a_changed_learning_run_is_exit_code_1_and_named(learned: Path) -> None:
@@ -296,7 +297,7 @@ def test_a_changed_learning_run_is_exit_code_1_and_named(learned: Path) -> None:
         "run 2: the replay DIFFERS from the record in behavior 3 (true_end_y), "
         "behavior 21 (not done again)\n"
     )
-    assert [d["number"] for d in ended.json["differences"]] == [3, 21]
+    assert [d["number"] for d in ended.result["differences"]] == [3, 21]
 
 
 @pytest.mark.fault(3)

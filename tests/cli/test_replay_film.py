@@ -126,7 +126,7 @@ def test_the_same_trial_gives_the_same_bytes(used: Path) -> None:
 def test_a_film_and_the_json_are_made_at_once(used: Path) -> None:
     args = ("replay", SOLVED, "--steps", "2", "--speed", "20", "--db", used)
     ended = done(*args, "--json", "--gif", used.parent / "film.gif")
-    assert [step["step"] for step in ended.json["steps"]] == [2]
+    assert [step["step"] for step in ended.result["steps"]] == [2]
     assert ended.err.endswith(same(SOLVED, used))
 
 

@@ -92,7 +92,7 @@ def test_with_a_speed_all_is_played_without_asking(
 
 def test_a_film_takes_the_time_that_it_should(used: Path) -> None:
     """No frame is due before its time: as many as there is time for are drawn."""
-    frames = done("replay", SOLVED, "--steps", "1", "--json", "--db", used).json
+    frames = done("replay", SOLVED, "--steps", "1", "--json", "--db", used).result
     (step,) = frames["steps"]
     code, shown = played(SOLVED, "--steps", "1", "--speed", "8", database=used)
     assert code == 0

@@ -15,7 +15,7 @@ def titles(database: Path) -> list[str]:
 def test_an_empty_database_names_the_first_command(empty: Path) -> None:
     ended = done("report", "--db", empty)
     assert (ended.out, ended.err) == (NOTHING, "")
-    assert done("report", "--json", "--db", empty).json == {
+    assert done("report", "--json", "--db", empty).result == {
         "learned": [],
         "solved": [],
         "broken": [],
@@ -35,7 +35,7 @@ LEARNED = [
 
 def test_after_learning(learned: Path) -> None:
     assert titles(learned) == LEARNED
-    value = done("report", "--json", "--db", learned).json
+    value = done("report", "--json", "--db", learned).result
     assert [run["tool"] for run in value["learned"]] == ["t-hook", "stick"]
     for run in value["learned"]:
         assert sum(group["tried"] for group in run["groups"]) == run["behaviors"] == 800
@@ -48,7 +48,7 @@ def test_after_solving_and_breaking(used: Path) -> None:
     assert reach == "Extension of reach, by learning run"
     assert broke == "Tools that broke"
     assert failures == "Failures by kind"
-    value = done("report", "--json", "--db", used).json
+    value = done("report", "--json", "--db", used).result
     tried = {(cell["tool"], cell["goal"]): cell for cell in value["solved"]}
     assert {key: cell["tried"] for key, cell in tried.items()} == {
         ("stick", "1"): 4,
@@ -68,9 +68,9 @@ def test_after_a_reproduction(reproduced: Path, leisurely: Path) -> None:
     """Its robots are not the person's own; its tables are those that the command showed."""
     again = ("reproduce", "--robots", "2", "--config", leisurely, "--db", reproduced)
     assert done("report", "--db", reproduced).out == done(*again).out
-    value = done("report", "--json", "--db", reproduced).json
+    value = done("report", "--json", "--db", reproduced).result
     assert value["learned"] == []
-    assert value["reproductions"] == [done(*again, "--json").json]
+    assert value["reproductions"] == [done(*again, "--json").result]
 
 
 def test_reading_changes_nothing(used: Path) -> None:
@@ -87,7 +87,7 @@ def test_trials_through_different_sensors_are_told_apart(learned: Path) -> None:
         one = ("solve", "--goal", "3", "--start", "1", "--tool", "stick")
         done(*one, "--sensor", sensor, "--db", learned)
         done("break-tool", "--sensor", sensor, "--db", learned)
-    overview = done("report", "--json", "--db", learned).json
+    overview = done("report", "--json", "--db", learned).result
     assert [one["sensor"] for one in overview["solved"]] == ["noisy", "exact", "camera"]
     assert [one["sensor"] for one in overview["broken"]] == ["noisy", "exact", "camera"]
     assert overview["trials"] == 3 + 3 * 32

@@ -28,7 +28,7 @@ def reproduce(database: Path, leisurely: Path, *more: str) -> tuple[str | Path, 
 @pytest.fixture
 def value(reproduced: Path, leisurely: Path) -> Any:
     """What the command gives as JSON."""
-    return done(*reproduce(reproduced, leisurely, "--json")).json
+    return done(*reproduce(reproduced, leisurely, "--json")).result
 
 
 def test_two_workers_make_the_store_that_one_makes(

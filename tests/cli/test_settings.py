@@ -33,7 +33,7 @@ def test_the_file_that_it_writes_gives_the_defaults_back(tmp_path: Path) -> None
 
 
 def test_json_has_each_setting_with_unit_limits_and_meaning(tmp_path: Path) -> None:
-    found = {one["setting"]: one for one in done("settings", "--json", cwd=tmp_path).json}
+    found = {one["setting"]: one for one in done("settings", "--json", cwd=tmp_path).results}
     assert len(found) == COUNT
     noise = found["sensor.position_noise"]
     assert noise.pop("meaning").startswith("Standard deviation of x and y")
@@ -56,7 +56,7 @@ def test_with_a_file_or_changes_only_what_differs_is_shown(tmp_path: Path) -> No
     assert "max_steps" in out
     assert "hold" in out
     assert "height" not in out
-    found = done("settings", *given, "--json", cwd=tmp_path).json
+    found = done("settings", *given, "--json", cwd=tmp_path).results
     assert [(one["setting"], one["value"], one["default"]) for one in found] == [
         ("motion.hold", 1.0, 0.25),
         ("trial.max_steps", 5, 60),

@@ -15,7 +15,7 @@ COUNTERS = "SELECT id, times_used, times_successful FROM affordance ORDER BY id"
 
 
 def test_all_starts_and_all_learned_tools_by_default(learned: Path) -> None:
-    trials = done("solve", "--goal", "2", "--json", "--db", learned).json
+    trials = done("solve", "--goal", "2", "--json", "--db", learned).results
     tools = [tool for tool in TOOL_PARTS if tool in {"stick", "t-hook"}]
     assert [(trial["tool"], trial["goal"], trial["start"]) for trial in trials] == [
         (tool, "2", start) for tool in tools for start in "1234"
@@ -60,14 +60,14 @@ def test_a_single_start_that_is_solved_is_exit_0(tmp_path: Path) -> None:
     learn = ("learn", "--tool", "stick", "--behaviors", "5", "--config", "large.toml")
     done(*learn, cwd=tmp_path)
     solve = ("solve", "--goal", "1", "--start", "3", "--json")
-    (trial,) = done(*solve, cwd=tmp_path).json
+    (trial,) = done(*solve, cwd=tmp_path).results
     assert (trial["outcome"], trial["steps"]) == ("solved", 0)
 
 
 def test_explain_says_what_each_search_left(learned: Path) -> None:
     """The nested searches only ever leave fewer rows; the last cut is ceil(0.2 n), at least 1."""
     args = ("solve", "--goal", "2", "--explain", "--json", "--db", learned)
-    trials = done(*args).json
+    trials = done(*args).results
     assert any(trial["explain"] for trial in trials)
     for trial in trials:
         assert [step["step"] for step in trial["explain"]] == list(range(1, trial["steps"] + 1))
@@ -87,7 +87,7 @@ def test_explain_says_what_each_search_left(learned: Path) -> None:
 def test_explain_says_it_in_words(learned: Path, tmp_path: Path) -> None:
     copy = Path(shutil.copy(learned, tmp_path / "copy.db"))
     args = ("solve", "--goal", "1", "--tool", "stick", "--start", "2", "--explain")
-    (trial,) = affcli(*args, "--json", "--db", copy).json
+    (trial,) = affcli(*args, "--json", "--db", copy).results
     text = affcli(*args, "--db", learned, COLUMNS="200").out
     head, *lines = text.partition("\n\n")[0].splitlines()
     steps = trial["steps"]
@@ -146,7 +146,7 @@ def test_the_same_trials_from_the_same_table_are_the_same(learned: Path, tmp_pat
     results: list[Any] = []
     for database in (learned, copy):
         args = ("solve", "--goal", "3", "--seed", "7", "--explain", "--json", "--db", database)
-        results.append(done(*args).json)
+        results.append(done(*args).results)
     assert results[0] == results[1]
     assert contents(learned) == contents(copy)
 

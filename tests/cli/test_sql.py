@@ -83,7 +83,7 @@ def test_a_huge_value_is_refused(query: str, learned: Path) -> None:
 def test_of_very_many_rows_the_first_are_shown(learned: Path) -> None:
     query = "with recursive c(n) as (select 1 union all select n + 1 from c) select n from c"
     ended = done("sql", query, "--json", "--db", learned)
-    assert [row["n"] for row in ended.json] == list(range(1, 10_001))
+    assert [row["n"] for row in ended.results] == list(range(1, 10_001))
     assert ended.err == "only the first 10000 rows are shown; add a limit or a where\n"
 
 
@@ -91,14 +91,14 @@ def test_of_very_many_rows_the_first_are_shown(learned: Path) -> None:
 def test_json_of_every_kind_of_value(learned: Path) -> None:
     query = """select 1 as a, 2.5 as b, 'x' as c, null as d, x'00ff' as e, 9e999 as f, -9e999 as g,
         9e999 - 9e999 as h, 9223372036854775807 as i, char(27, 0, 10) as j, 'ä' as k"""
-    (row,) = done("sql", query, "--json", "--db", learned).json
+    (row,) = done("sql", query, "--json", "--db", learned).results
     values = [1, 2.5, "x", None, "00ff", None, None, None, str(2**63 - 1), "\x1b\x00\n", "ä"]
     assert row == dict(zip("abcdefghijk", values, strict=True))
 
 
 def test_columns_of_one_name_are_told_apart(learned: Path) -> None:
     query = "select 1 as a, 2 as a, 3 as 'a 2', 4 as a"
-    (row,) = done("sql", query, "--json", "--db", learned).json
+    (row,) = done("sql", query, "--json", "--db", learned).results
     assert row == {"a": 1, "a 2": 2, "a 2 2": 3, "a 3": 4}
 
 
@@ -118,7 +118,7 @@ def test_control_characters_are_shown_escaped(learned: Path) -> None:
 def test_a_table_becomes_records_where_it_does_not_fit(learned: Path) -> None:
     """The view has more columns than a screen; nothing of it is cut off."""
     query = "select * from affordance_table order by id limit 2"
-    first, second = done("sql", query, "--json", "--db", learned).json
+    first, second = done("sql", query, "--json", "--db", learned).results
     for columns in (80, 40):
         out = done("sql", query, "--db", learned, COLUMNS=str(columns)).out
         assert max(map(len, out.splitlines())) <= columns
@@ -134,7 +134,7 @@ def test_no_rows_are_said_to_be_none(learned: Path) -> None:
     ended = done("sql", "select tool from trial", "--db", learned)
     assert (ended.out.split()[0], ended.err) == ("tool", "no rows\n")
     ended = done("sql", "select tool from trial", "--json", "--db", learned)
-    assert ended.json == []
+    assert ended.results == []
 
 
 @pytest.mark.parametrize("view", ["affordance_table", "affordance_wide"])
@@ -145,7 +145,7 @@ def test_the_views_can_be_read(view: str, learned: Path) -> None:
 
 def query(text: str, database: Path) -> list[dict[str, object]]:
     """Return the rows of a query."""
-    value: list[dict[str, object]] = done("sql", text, "--json", "--db", database).json
+    value: list[dict[str, object]] = done("sql", text, "--json", "--db", database).results
     return value
 
 
@@ -177,5 +177,5 @@ def test_a_large_seed_is_the_same_in_json_and_csv(tmp_path: Path) -> None:
     path, seed = tmp_path / "my.db", "9007199254740993"
     done("learn", "--tool", "stick", "--behaviors", "5", "--seed", seed, "--db", path)
     query = "select seed, robot from learning_run"
-    assert done("sql", query, "--json", "--db", path).json == [{"seed": seed, "robot": 0}]
+    assert done("sql", query, "--json", "--db", path).results == [{"seed": seed, "robot": 0}]
     assert f"{seed},0" in done("sql", query, "--csv", "--db", path).out

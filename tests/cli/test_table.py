@@ -41,7 +41,7 @@ def test_rows_are_those_of_the_latest_finished_run_of_each_tool(
 def test_a_row_says_what_was_learned(learned: Path) -> None:
     found = {row["id"]: row for row in listed(learned, "--run", "1")}
     query = "SELECT * FROM affordance_wide WHERE run = 1 ORDER BY id"
-    wide = done("sql", query, "--json", "--db", learned).json
+    wide = done("sql", query, "--json", "--db", learned).results
     assert list(found) == [row["id"] for row in wide]
     for row in wide:
         listed_row = found[row["id"]]
@@ -153,7 +153,7 @@ def test_no_rows_are_said_to_be_none(learned: Path) -> None:
     assert ended.out.startswith("Rows of run 1 (t-hook), run 2 (stick)\nid  tool ")
     assert ended.err == "no rows\n"
     ended = done("table", "list", *none, "--json")
-    assert (ended.json, ended.err) == ([], "no rows\n")
+    assert (ended.results, ended.err) == ([], "no rows\n")
 
 
 @pytest.mark.parametrize("command", [("list",), ("list", "--all-runs"), ("export",)])
@@ -249,11 +249,11 @@ def most_tried(database: Path) -> int:
 
 def test_a_row_is_shown_in_full(used: Path) -> None:
     row_id = most_tried(used)
-    shown = done("table", "show", str(row_id), "--json", "--db", used).json
+    shown = done("table", "show", str(row_id), "--json", "--db", used).result
     (as_listed,) = [row for row in listed(used) if row["id"] == row_id]
     assert shown.items() >= as_listed.items()
     query = f"SELECT * FROM affordance_wide WHERE id = {row_id}"
-    (wide,) = done("sql", query, "--json", "--db", used).json
+    (wide,) = done("sql", query, "--json", "--db", used).results
     for moment in ("start", "end"):
         assert shown[moment] == {name: wide[f"{moment}_{name}"] for name in Observation._fields}
     assert shown["binding"] == {"behavior": "grasp", "params": {"grasp_point": 1.0}}
@@ -262,7 +262,7 @@ def test_a_row_is_shown_in_full(used: Path) -> None:
 
 def test_the_history_of_a_row_is_every_step_that_tried_it(used: Path) -> None:
     row_id = most_tried(used)
-    shown = done("table", "show", str(row_id), "--json", "--db", used).json
+    shown = done("table", "show", str(row_id), "--json", "--db", used).result
     query = f"""SELECT trial_id AS trial, protocol, shape, goal, start, counters, number AS step,
         planner, reasons, regrasped, placing_status, status,
         expected_dx, expected_dy, seen_dx, seen_dy, replicated,
@@ -270,7 +270,7 @@ def test_the_history_of_a_row_is_every_step_that_tried_it(used: Path) -> None:
         died AS excluded, lost
         FROM step JOIN trial ON trial.id = trial_id WHERE affordance_id = {row_id}
         ORDER BY trial_id, number"""
-    stored = done("sql", query, "--json", "--db", used).json
+    stored = done("sql", query, "--json", "--db", used).results
     for step in stored:
         step["expected"] = [step.pop("expected_dx"), step.pop("expected_dy")]
         step["seen"] = [step.pop("seen_dx"), step.pop("seen_dy")]
@@ -295,7 +295,7 @@ def test_the_tries_of_a_verification_explain_the_counters_too(used: Path) -> Non
     done("verify", "--tool", "t-hook", "--shape", "stick", "--rows", "30", "--update", "--db", used)
     query = """SELECT affordance_id, number, replicated FROM replication ORDER BY number"""
     for row_id, number, replicated in rows(used, query):
-        shown = done("table", "show", str(row_id), "--json", "--db", used).json
+        shown = done("table", "show", str(row_id), "--json", "--db", used).result
         (tried,) = shown["verifications"]
         assert (tried["number"], tried["shape"]) == (number, "stick")
         assert tried["replicated"] == bool(replicated)
@@ -359,7 +359,7 @@ def test_whatever_words_stand_in_the_database_they_command_nothing(text: str, us
         for width in ("80", "40"):
             ended = done("table", *args, "--db", used, COLUMNS=width)
             assert all(line.isprintable() for line in ended.out.splitlines())
-        assert done("table", *args, "--json", "--db", used).json
+        assert done("table", *args, "--json", "--db", used).results
     (first, *_) = listed(used, "--all-runs")
     assert (first["tool"], first["behavior"]) == (one_line(text, 20_000),) * 2
     assert rows(used, "SELECT count(*) FROM affordance") != [(0,)]

@@ -74,7 +74,7 @@ def test_a_reader_who_has_seen_enough_is_no_failure(command: str, used: Path) ->
 @pytest.mark.fault(35)
 def test_trials_are_done_to_the_end_though_nobody_reads(learned: Path) -> None:
     shell("affcli solve --goal 1 --explain --db FILE | true", learned)
-    report = done("report", "--json", "--db", learned).json
+    report = done("report", "--json", "--db", learned).result
     assert sum(cell["tried"] for cell in report["solved"]) == 8
 
 
@@ -162,7 +162,7 @@ def test_results_go_to_stdout_alone(tmp_path: Path) -> None:
     code, shown = on_terminal(*args, results_to=results)
     assert code == 0
     assert "stick ━" in ESCAPE.sub("", shown)
-    (run,) = json.loads(results.read_text())
+    (run,) = json.loads(results.read_text())["results"]
     assert run["behaviors"] == 1200
 
 

@@ -41,7 +41,7 @@ def test_an_intact_tool_is_found_intact_and_nothing_is_written(learned: Path) ->
     assert ended.err == ""
     assert ended.out.startswith("Run 1, t-hook: table holds: ")
     assert "stored table left as it is" in ended.out
-    value = done(*verify(learned, "--json")).json
+    value = done(*verify(learned, "--json")).result
     ((in_table,),) = rows(learned, "SELECT rows FROM learning_run WHERE tool = 't-hook'")
     assert value["tries"] == value["rows"] == in_table
     assert (value["verdict"], value["updated"], value["shape"]) == ("table holds", False, "t-hook")
@@ -49,7 +49,7 @@ def test_an_intact_tool_is_found_intact_and_nothing_is_written(learned: Path) ->
 
 
 def test_a_broken_tool_is_found_out_with_the_rows_and_the_region(learned: Path) -> None:
-    value = done(*verify(learned, "--shape", "l-hook", "--json")).json
+    value = done(*verify(learned, "--shape", "l-hook", "--json")).result
     assert value["verdict"] == "tool has changed"
     assert value["decided_after"] < 60
     assert len(value["drifted"]) == value["of_live_rows"]["failed"] > 20
@@ -62,16 +62,16 @@ def test_a_broken_tool_is_found_out_with_the_rows_and_the_region(learned: Path) 
         for one in value[group]:
             assert 0 <= one["low"] <= one["replicated"] / one["tries"] <= one["high"] <= 1
     known = {row for (row,) in rows(learned, "SELECT id FROM affordance")}
-    assert {row["affordance"] for row in value["drifted"]} <= known
+    assert {row["row"] for row in value["drifted"]} <= known
 
 
 def test_it_stops_as_soon_as_it_can_be_told(learned: Path) -> None:
-    value = done(*verify(learned, "--shape", "l-hook", "--until-verdict", "--json")).json
+    value = done(*verify(learned, "--shape", "l-hook", "--until-verdict", "--json")).result
     assert value["tries"] == value["decided_after"] < 60
 
 
 def test_more_tries_than_rows_go_round_again(learned: Path) -> None:
-    value = done(*verify(learned, "--tool", "stick", "--rows", "400", "--json")).json
+    value = done(*verify(learned, "--tool", "stick", "--rows", "400", "--json")).result
     assert value["tries"] == 400 > value["rows"]
     assert value["verdict"] == "table holds"
     few = done(*verify(learned, "--tool", "stick", "--rows", "3")).out
@@ -80,12 +80,12 @@ def test_more_tries_than_rows_go_round_again(learned: Path) -> None:
 
 def test_the_same_seed_says_the_same_and_another_something_else(learned: Path) -> None:
     args = verify(learned, "--shape", "l-hook", "--rows", "30", "--json")
-    assert done(*args).json == done(*args).json
-    assert done(*args).json["drifted"] != done(*args, "--seed", "3").json["drifted"]
+    assert done(*args).result == done(*args).result
+    assert done(*args).result["drifted"] != done(*args, "--seed", "3").result["drifted"]
 
 
 def test_update_counts_the_tries_in_the_stored_table(learned: Path) -> None:
-    value = done(*verify(learned, "--shape", "l-hook", "--rows", "70", "--update", "--json")).json
+    value = done(*verify(learned, "--shape", "l-hook", "--rows", "70", "--update", "--json")).result
     assert value["updated"]
     assert rows(learned, USES) == rows(learned, TRIES)
     assert tries(learned) == value["tries"] == 70
@@ -95,7 +95,7 @@ def test_update_counts_the_tries_in_the_stored_table(learned: Path) -> None:
     dead = "SELECT count(*) FROM affordance WHERE 2 * times_successful <= times_used"
     ((excluded,),) = rows(learned, dead)
     assert excluded == value["of_live_rows"]["failed"]
-    again = done(*verify(learned, "--shape", "l-hook", "--json")).json
+    again = done(*verify(learned, "--shape", "l-hook", "--json")).result
     assert again["of_excluded_rows"]["tries"] == excluded
     done("db", "check", "--db", learned)
 
@@ -169,7 +169,7 @@ def test_a_table_learned_through_wild_noise_is_bad_input_that_names_the_row(
 def test_a_table_can_be_verified_while_another_process_writes(learned: Path) -> None:
     with closing(sqlite3.connect(learned, isolation_level=None)) as driver:
         driver.execute("BEGIN IMMEDIATE")
-        value = done(*verify(learned, "--rows", "5", "--json")).json
+        value = done(*verify(learned, "--rows", "5", "--json")).result
         assert value["tries"] == 5
 
 

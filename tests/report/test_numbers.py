@@ -101,7 +101,7 @@ def test_broken_json() -> None:
     assert value["whole"]["trials"] == 3
     assert value["whole"]["mean_steps"] == 1.0
     assert value["excluded_rows"][0] == {
-        "row": 9,
+        "step": 9,
         "behavior": "slide arm left 5",
         "on_missing_side": True,
         "lost": True,

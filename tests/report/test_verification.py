@@ -115,7 +115,7 @@ def test_all_rows_that_drifted_are_in_the_json_and_the_first_on_the_screen() -> 
     text = " ".join(drawn(verification_tables(MANY), 80).split())
     assert f"{30 - MOST_ROWS} more, all in --json" in text
     drifted = verification_json(BROKEN)["drifted"]
-    assert [row["affordance"] for row in drifted] == [10, 2, 4, 6]
+    assert [row["row"] for row in drifted] == [10, 2, 4, 6]
     assert drifted[0]["placing"] == "blocked"
     assert (drifted[0]["times_successful"], drifted[0]["times_used"]) == (5, 6)
 

@@ -1,0 +1,97 @@
+"""``--json``: every command answers in the shape, and with the keys, that the README documents."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from affcli.cli.terminal import JSON_FORMAT
+from tests.cli.program import affcli, done
+from tests.cli.test_every_option import commands
+from tests.readmes import QUOTED, blocks, table_rows
+
+COMMANDS = "affcli/cli/README.md"
+(SHAPE,) = map(json.loads, blocks(COMMANDS, "json"))
+DOCUMENTED = {
+    row[0].strip("`"): QUOTED.findall(row[2])
+    for row in table_rows(COMMANDS)
+    if len(row) == 3 and row[1].startswith("a ") and not row[0].startswith("`affcli")
+}
+"""The keys of each result, by the command that gives it."""
+ANSWERING = [
+    " ".join(words)
+    for words, command in commands()
+    if any("--json" in parameter.opts for parameter in command.params)
+]
+GIVEN = {
+    "learn": "--tool t-hook --behaviors 20",
+    "solve": "--goal 2",
+    "verify": "--rows 10",
+    "predict": "--pushes 10",
+    "replay TRIAL": "5",
+    "replay --run": "1",
+    "table show": "17",
+}
+"""What a command needs to answer, or to answer soon."""
+
+
+def called(documented: str) -> str:
+    """Return the words that call a command."""
+    return " ".join(word for word in documented.split() if word.islower() and word[0] != "-")
+
+
+def test_every_command_that_answers_in_json_is_documented() -> None:
+    assert {called(one) for one in DOCUMENTED} == set(ANSWERING)
+
+
+def test_the_shape_that_is_documented_is_that_of_this_format() -> None:
+    assert list(SHAPE) == ["command", "format", "results"]
+    assert SHAPE["format"] == JSON_FORMAT
+    assert list(SHAPE["results"][0]) == DOCUMENTED[SHAPE["command"]]
+
+
+def answer(documented: str, database: Path | None, *more: str | Path) -> list[dict[str, object]]:
+    """Return the results of a command, which says its name."""
+    words = [word for word in documented.split() if word.islower()]
+    named = () if database is None else ("--db", database)
+    ended = done(*words, *GIVEN.get(documented, "").split(), *more, "--json", *named)
+    assert ended.json["command"] == called(documented)
+    assert ended.results
+    return ended.results
+
+
+OF_A_DATABASE = [
+    one for one in DOCUMENTED if one.split()[0] not in {"camera", "list", "settings", "sql"}
+]
+
+
+@pytest.mark.parametrize("documented", OF_A_DATABASE)
+def test_results_have_the_keys_that_are_documented(
+    documented: str, used: Path, reproduced: Path, leisurely: Path
+) -> None:
+    if documented == "reproduce":
+        few = ("--robots", "2", "--workers", "1", "--config", leisurely)
+        results = answer(documented, reproduced, *few)
+    else:
+        results = answer(documented, used)
+    keys = DOCUMENTED[documented]
+    if documented == "table show":
+        keys = [*DOCUMENTED["table list"], *keys[1:]]
+    assert {tuple(result) for result in results} == {tuple(keys)}
+
+
+@pytest.mark.parametrize("documented", ["list", "settings"])
+def test_what_needs_no_database_has_its_keys_too(documented: str) -> None:
+    results = answer(documented, None)
+    assert {tuple(result) for result in results} == {tuple(DOCUMENTED[documented])}
+
+
+def test_a_query_answers_with_its_columns(learned: Path) -> None:
+    (result,) = answer("sql", learned, "select 1 as one, 2 as x, 3 as x")
+    assert result == {"one": 1, "x": 2, "x 2": 3}
+
+
+def test_an_error_is_a_line_on_stderr_and_an_exit_code(learned: Path) -> None:
+    ended = affcli("verify", "--tool", "l-hook", "--json", "--db", learned)
+    assert (ended.code, ended.out) == (2, "")
+    assert ended.err.startswith("affcli: nothing learned with the l-hook")
