@@ -94,6 +94,21 @@ FIGURE = Group(
     ),
 )
 
+RUNS = Group(
+    "runs",
+    "List what was learned, run by run; write notes; delete.",
+    (
+        Command("list", "runs:list_runs", "List the learning runs, with their notes."),
+        Command("show", "runs:show_run", "Show one learning run in full."),
+        Command(
+            "note",
+            "runs:note_run",
+            "Write a note on a learning run, in place of the one it has.",
+        ),
+        Command("delete", "runs:delete_run", "Delete a learning run and all that belongs to it."),
+    ),
+)
+
 TABLE = Group(
     "table",
     "Look at the rows of the affordance tables, and take them out.",
@@ -156,6 +171,7 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
         CAMERA,
     ),
     "Data": (
+        RUNS,
         Command("sql", "sql:sql", "Ask the database one question in SQL."),
         DB,
         Command("doctor", "doctor:doctor", "Say whether everything is here that affcli needs."),

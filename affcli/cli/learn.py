@@ -9,6 +9,7 @@ from affcli import store as stores
 from affcli.cli.database import opened
 from affcli.cli.options import (
     DEFAULT_DATABASE,
+    MOST_WORKERS,
     AsJson,
     Binding,
     Changes,
@@ -24,12 +25,12 @@ from affcli.cli.options import (
     check_count,
     check_if_given,
     checked_hours,
+    checked_note,
 )
-from affcli.cli.terminal import now, progress, say, show_either
+from affcli.cli.terminal import bars, now, say, show_either
 from affcli.config import load_settings, with_sensor
 from affcli.core.limits import MOST_BEHAVIORS
 from affcli.core.records import AlikeRun, LearningRunInfo
-from affcli.core.results import BehaviorGroup
 from affcli.core.specs import LearningSpec
 from affcli.errors import BadInputError, UsageError
 from affcli.report.learning import groups_json, groups_table, run_json, summary
@@ -65,6 +66,24 @@ def learn(
     sensor: Sensor = None,
     world: World = None,
     resume: Resume = False,
+    workers: Annotated[
+        int,
+        typer.Option(
+            "--workers",
+            help="Processes, when there are several tools.",
+            metavar="N",
+            callback=check_count("--workers", MOST_WORKERS),
+        ),
+    ] = 1,
+    note: Annotated[
+        str | None,
+        typer.Option(
+            "--note",
+            help="What you want to remember of it.",
+            metavar="TEXT",
+            callback=check_if_given(checked_note),
+        ),
+    ] = None,
     database: Database = DEFAULT_DATABASE,
     config: Config = None,
     changes: Changes = None,
@@ -77,7 +96,7 @@ def learn(
     """
     names = _tools_asked_for(tool, all_tools=all_tools)
     own = (hours, behaviors, seed, sensor, config, changes, repertoire, binding, explorer, world)
-    _check_together(names, hours, behaviors, resume=resume, own=any(own))
+    _check_together(names, hours, behaviors, resume=resume, own=any((*own, note)))
     if behaviors is None and hours is None:
         hours = 1.0
 
@@ -91,14 +110,17 @@ def learn(
             specs = lab.learning.interrupted(store)
             if not specs:
                 raise UsageError(f"nothing to resume in {database}; learn a tool: --tool t-hook")
-        found, stuck = _learn_all(store, specs, all_or_none=bool(names))
+        runs, stuck = _begun(store, specs, note, all_or_none=bool(names))
+        done = _learned(store, runs, workers)
+        found = [(run, store.results.behavior_groups(run.id)) for run in done]
+    new = {run.id for run in runs if run.status != "done"}
     show_either(
         as_json=as_json,
         results=lambda: [
-            {**run_json(learned.info), "new": learned.new, "groups": groups_json(group)}
-            for learned, group in found
+            {**run_json(run), "new": run.id in new, "groups": groups_json(groups)}
+            for run, groups in found
         ],
-        tables=lambda: [groups_table(learned.info, group) for learned, group in found],
+        tables=lambda: [groups_table(run, groups) for run, groups in found],
     )
     if stuck:
         for line in stuck[:-1]:
@@ -126,43 +148,52 @@ def _check_together(
         raise UsageError("give --hours or --behaviors, not both")
 
 
-def _learn_all(
-    store: "stores.Store", specs: list[LearningSpec], *, all_or_none: bool
-) -> tuple[list[tuple["lab.learning.Learned", tuple[BehaviorGroup, ...]]], list[str]]:
-    """Return what the runs gave, with their rows counted, and why others cannot go on.
+def _begun(
+    store: "stores.Store", specs: list[LearningSpec], note: str | None, *, all_or_none: bool
+) -> tuple[list[LearningRunInfo], list[str]]:
+    """Return the runs as far as they came, and why others cannot go on.
 
     A run whose parts are not all here does not keep the others from going on, unless `all_or_none`.
     """
-    found, stuck = [], []
+    runs, stuck = [], []
     for spec in specs:
+        for alike in lab.learning.made_by_other_defaults(store, spec):
+            say(_in_words(alike))
         try:
-            learned = _learn(store, spec)
+            runs.append(lab.learning.begun(store, spec, now, note))
         except BadInputError as error:
             if all_or_none:
                 raise
             stuck.append(f"the interrupted {spec.tool}, seed {spec.seed}: {error}")
-        else:
-            found.append((learned, store.results.behavior_groups(learned.info.id)))
-    return found, stuck
+    return runs, stuck
 
 
-def _learn(store: "stores.Store", spec: LearningSpec) -> "lab.learning.Learned":
-    """Run one learning run with progress on stderr; say what it gave."""
-    for alike in lab.learning.made_by_other_defaults(store, spec):
-        say(_in_words(alike))
-    goal = 3600.0 * spec.hours if spec.hours is not None else float(spec.behaviors or 0)
-    with progress(spec.tool, goal) as bar:
+def _learned(
+    store: "stores.Store", runs: list[LearningRunInfo], workers: int
+) -> list[LearningRunInfo]:
+    """Let runs go on to their end, with a bar for each on stderr; say what each gave."""
+    done = {run.id: run for run in runs if run.status == "done"}
+    for run in done.values():
+        _say_done("already learned, nothing to do:", run)
+    with bars({run.id: (run.spec.tool, _goal(run)) for run in runs if run.id not in done}) as bar:
+        for run in lab.learning.learn_all(store, runs, now, workers, say):
+            clock = run.robot_seconds if run.spec.hours is not None else run.behaviors
+            bar(run.id, min(clock, _goal(run)), summary(run))
+            if run.status == "done":
+                done[run.id] = run
+                _say_done("learned", run)
+    return [done[run.id] for run in runs]
 
-        def update(info: LearningRunInfo) -> None:
-            """Show the robot clock, behaviors, rows and resets."""
-            done = info.robot_seconds if spec.hours is not None else info.behaviors
-            bar(min(done, goal), summary(info))
 
-        learned = lab.learning.learn(store, spec, now, update)
-    info = learned.info
-    verb = "learned" if learned.new else "already learned, nothing to do:"
-    say(f"{verb} {spec.tool} (run {info.id}, seed {spec.seed}): {summary(info)}")
-    return learned
+def _goal(run: LearningRunInfo) -> float:
+    """Return when a run is done: at so many seconds of the robot, or behaviors."""
+    spec = run.spec
+    return 3600.0 * spec.hours if spec.hours is not None else float(spec.behaviors or 0)
+
+
+def _say_done(verb: str, run: LearningRunInfo) -> None:
+    """Say what a finished run gave."""
+    say(f"{verb} {run.spec.tool} (run {run.id}, seed {run.spec.seed}): {summary(run)}")
 
 
 def _in_words(alike: AlikeRun) -> str:

@@ -15,7 +15,7 @@ import typer
 
 from affcli import registry
 from affcli.core.identity import Component
-from affcli.core.limits import LARGEST_SEED, LONGEST_HOURS
+from affcli.core.limits import LARGEST_SEED, LONGEST_HOURS, LONGEST_NOTE
 from affcli.core.names import one_of
 from affcli.core.observation import SENSOR_KINDS, SensorKind
 from affcli.core.part import Kind
@@ -84,6 +84,20 @@ def checked_numbers(option: str, text: str, count: int) -> list[float]:
             "commas between them"
         )
     return values
+
+
+def checked_note(text: str) -> str:
+    """Return a note on a run; BadInputError when it is too long or no text."""
+    if len(text) > LONGEST_NOTE or any(map(_is_surrogate, text)):
+        raise BadInputError(
+            f"the note {one_line(text, 40)}: must be text of at most {LONGEST_NOTE} letters"
+        )
+    return text
+
+
+def _is_surrogate(letter: str) -> bool:
+    """Tell whether a letter stands for a byte that is none."""
+    return "\ud800" <= letter <= "\udfff"
 
 
 def checked_tool(name: str) -> str:

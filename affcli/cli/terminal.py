@@ -8,6 +8,7 @@ import time
 from collections import deque
 from contextlib import contextmanager
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
@@ -188,8 +189,21 @@ def progress(description: str, total: float) -> "Iterator[Callable[[float, str],
 
     Silent without a terminal.
     """
+    with bars({0: (description, total)}) as tell:
+        yield partial(tell, 0)
+
+
+@contextmanager
+def bars(
+    tasks: "Mapping[int, tuple[str, float]]",
+) -> "Iterator[Callable[[int, float, str], object]]":
+    """Give bars on stderr, one below the other, as `progress` gives one.
+
+    Args:
+        tasks: what each is of, and how much there is to do, by a number of its own.
+    """
     if not sys.stderr.isatty():
-        yield lambda _done, _status: None
+        yield lambda _task, _done, _status: None
         return
     from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -200,8 +214,11 @@ def progress(description: str, total: float) -> "Iterator[Callable[[float, str],
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=_console(sys.stderr), transient=True) as shown:
-        task = shown.add_task(description, total=total, status="")
-        yield lambda done, status: shown.update(task, completed=done, status=status)
+        ids = {
+            number: shown.add_task(description, total=total, status="")
+            for number, (description, total) in tasks.items()
+        }
+        yield lambda task, done, status: shown.update(ids[task], completed=done, status=status)
 
 
 def followed(items: "Iterable[T]", description: str, total: int, noun: str) -> "list[T]":

@@ -8,3 +8,5 @@ MOST_BEHAVIORS = 10_000_000
 """Behaviors of the longest learning run."""
 MOST_ROBOTS = 100_000
 """Robots of the largest reproduction."""
+LONGEST_NOTE = 500
+"""Letters of a note on a learning run."""

@@ -49,6 +49,8 @@ class LearningRunInfo:
         redraws: wrist positions drawn again because the attractor was in the way.
         robot_seconds: the robot clock.
         checkpoint: what it needs to go on; None at the beginning and when done.
+        started_at: when it was begun, ISO text, UTC.
+        note: what a person wrote of it; no part of what it is a function of.
     """
 
     id: int
@@ -62,6 +64,25 @@ class LearningRunInfo:
     redraws: int
     robot_seconds: float
     checkpoint: dict[str, Any] | None
+    started_at: str
+    note: str | None = None
+
+
+class Belongings(NamedTuple):
+    """How many records belong to a learning run: they would be deleted with it.
+
+    Args:
+        behaviors, rows: what it did and learned.
+        trials, steps: those that used its table.
+        verifications, tries: those of its table.
+    """
+
+    behaviors: int
+    rows: int
+    trials: int
+    steps: int
+    verifications: int
+    tries: int
 
 
 class ChangedPart(NamedTuple):

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
+from typing import Any
 
 from affcli.config import first_defaults, known_settings, was_default
 from affcli.core.records import AlikeRun, ChangedPart, LearningRunInfo
@@ -31,13 +32,29 @@ class Learned:
     new: bool
 
 
+@dataclass(frozen=True, slots=True)
+class Chunk:
+    """What a robot did next, and what it needs to go on from there.
+
+    Args:
+        steps: behaviors that follow one another.
+        checkpoint: after the last of them; None when the run is over, or cannot be gone on with.
+        robot_seconds: the robot clock after the last of them.
+        done: the run is over.
+        calibration: of the camera that the robot sees through, as JSON; None without one.
+    """
+
+    steps: Sequence[LearningStep]
+    checkpoint: Mapping[str, Any] | None
+    robot_seconds: float
+    done: bool
+    calibration: str | None
+
+
 def learn(
     store: Store, spec: LearningSpec, now: Callable[[], str], progress: Progress | None = None
 ) -> Learned:
     """Learn a tool, going on from what the store holds of the same run.
-
-    A run is a pure function of its spec, so two processes that work on the same run compute the
-    same behaviors: whoever saves a chunk first wins, the other goes on from there.
 
     Args:
         store: open for writing.
@@ -48,45 +65,105 @@ def learn(
     Raises:
         DatabaseError: a chunk could not be saved; the chunks before it are kept.
     """
-    found = store.learning.find(spec)
-    if found is not None and found.status == "done":
-        return Learned(found, new=False)
-    # Only now: who finds the run done needs no physics engine.
-    from affcli.lab.learning_run import gone_on_with
-    from affcli.lab.run_parts import world_of
-    from affcli.lab.versions import versions
-
-    made_with = versions(world_of(spec, again=True), spec.sensor)
-    info = store.learning.begin(spec, made_with, now())
-    new = False
-    while info.status != "done":
-        run = gone_on_with(info)
-        # What cannot be gone on with is saved whole: after an interruption it begins anew.
-        size = None if run.checkpoint() is None else CHUNK
-        for chunk in _chunks(run.steps(), size):
-            new = True
-            saved = store.learning.append(
-                info.id,
-                info.behaviors,
-                chunk,
-                None if run.done else run.checkpoint(),
-                run.setting.robot.clock,
-                done=run.done,
-                now=now(),
-                calibration=run.calibration,
-            )
-            info = store.learning.begin(spec, made_with, now())
-            if progress is not None:
-                progress(info)
-            if not saved:
-                break
+    info = begun(store, spec, now)
+    new = info.status != "done"
+    for one in learn_all(store, [info], now):
+        info = one
+        if progress is not None:
+            progress(info)
     return Learned(info, new)
 
 
-def _chunks(steps: Iterator[LearningStep], size: int | None) -> Iterator[Sequence[LearningStep]]:
-    """Gather steps into chunks of this size, all in one for None; the last may be shorter."""
-    while chunk := list(islice(steps, size)):
-        yield chunk
+def begun(
+    store: Store, spec: LearningSpec, now: Callable[[], str], note: str | None = None
+) -> LearningRunInfo:
+    """Return the stored run of a spec, as far as it came; begun if there is none.
+
+    Args:
+        store: open for writing.
+        spec: which run.
+        now: gives the time as ISO text, for the record only.
+        note: written on it, in place of the one it has; None to leave that.
+
+    Raises:
+        BadInputError: a part that this affcli lacks, or has in another version.
+        DatabaseError: what it needs to go on is missing.
+    """
+    info = store.learning.find(spec)
+    if info is None or info.status != "done":
+        # Only now: who finds the run done needs no physics engine.
+        from affcli.lab.learning_run import LearningRun, gone_on_with
+        from affcli.lab.versions import versions
+
+        run = LearningRun(spec) if info is None else gone_on_with(info)
+        info = store.learning.begin(spec, versions(run.world, spec.sensor), now())
+    if note is not None:
+        store.runs.note(info.id, note)
+        info = store.learning.run(info.id)
+    return info
+
+
+def learn_all(
+    store: Store,
+    runs: Sequence[LearningRunInfo],
+    now: Callable[[], str],
+    workers: int = 1,
+    warn: Callable[[str], object] = str,
+) -> Iterator[LearningRunInfo]:
+    """Let runs that were begun go on to their end, each a chunk at a time, in turn.
+
+    A run is a pure function of its spec, so several processes that work on the same run compute the
+    same behaviors: whoever saves a chunk first wins, the others go on from there. Chunks are saved
+    in the order of the runs by this process alone: the same store for any number of workers.
+
+    Args:
+        store: open for writing.
+        runs: as far as they came.
+        now: gives the time as ISO text, for the record only.
+        workers: processes that compute; 1 does everything in this one.
+        warn: is told when the processes cannot be started, and one does it all.
+
+    Yields:
+        What the store now holds of a run, each time a chunk of it is saved.
+
+    Raises:
+        DatabaseError: a chunk could not be saved; the chunks before it are kept.
+        UsageError: a run was deleted meanwhile.
+    """
+    from affcli.lab.workers import working
+
+    left = [run for run in runs if run.status != "done"]
+    with working(next_chunk, min(workers, len(left)), warn) as chunks_of:
+        while left:
+            saved = []
+            for run, chunk in zip(left, chunks_of(left), strict=True):
+                store.learning.append(
+                    run.id,
+                    run.behaviors,
+                    chunk.steps,
+                    chunk.checkpoint,
+                    chunk.robot_seconds,
+                    done=chunk.done,
+                    now=now(),
+                    calibration=chunk.calibration,
+                )
+                saved.append(store.learning.run(run.id))
+                yield saved[-1]
+            left = [run for run in saved if run.status != "done"]
+
+
+def next_chunk(info: LearningRunInfo) -> Chunk:
+    """Return what a run that is not done gives next: `CHUNK` behaviors, or fewer at its end.
+
+    What cannot be gone on with is done whole: after an interruption it begins anew.
+    """
+    from affcli.lab.learning_run import gone_on_with
+
+    run = gone_on_with(info)
+    size = None if run.checkpoint() is None else CHUNK
+    steps = tuple(islice(run.steps(), size))
+    checkpoint = None if run.done else run.checkpoint()
+    return Chunk(steps, checkpoint, run.setting.robot.clock, run.done, run.calibration)
 
 
 def interrupted(store: Store) -> list[LearningSpec]:

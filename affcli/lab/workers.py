@@ -10,6 +10,8 @@ import subprocess
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from functools import partial
 from multiprocessing.connection import Connection, Pipe, wait
 from queue import SimpleQueue
 from threading import Thread
@@ -32,16 +34,17 @@ T = TypeVar("T")
 R = TypeVar("R")
 
 
-def in_order(
-    work: Callable[[T], R], tasks: Sequence[T], workers: int, warn: Callable[[str], object]
-) -> Iterator[R]:
-    """Yield what `work` gives for each task, computed by so many processes, or else in this one.
+@contextmanager
+def working(
+    work: Callable[[T], R], workers: int, warn: Callable[[str], object]
+) -> Iterator[Callable[[Sequence[T]], Iterator[R]]]:
+    """Give what yields the answer to each of some tasks, in their order.
 
-    No more than a few answers wait at any time, so memory stays flat however many tasks.
+    Computed by so many processes, or else in this one. No more than a few answers wait at any time,
+    so memory stays flat however many tasks.
 
     Args:
         work: what is done with a task; it, tasks and answers can be pickled.
-        tasks: in the order of the answers.
         workers: processes; 1 does everything in this one.
         warn: is told, in one line, that the processes cannot be started and this one does it all.
 
@@ -49,19 +52,24 @@ def in_order(
         AffcliError: a worker process died.
         Exception: what `work` raised.
     """
-    wanted = min(workers, len(tasks))
     pool: list[_Worker] = []
     try:
-        why = _start(pool, wanted, work) if wanted > 1 else ""
-        if pool and not why:
-            yield from _answers(pool, tasks)
-            return
+        why = _start(pool, workers, work) if workers > 1 else ""
+        if why:
+            _end(pool)
+            warn(f"{workers} workers cannot be started ({why}); going on as with --workers 1")
+        yield partial(_answers, pool) if pool else partial(map, work)
     finally:
         # Also when nobody wants more answers: those begun might take long.
         _end(pool)
-    if why:
-        warn(f"{wanted} workers cannot be started ({why}); going on as with --workers 1")
-    yield from map(work, tasks)
+
+
+def in_order(
+    work: Callable[[T], R], tasks: Sequence[T], workers: int, warn: Callable[[str], object]
+) -> Iterator[R]:
+    """Yield what `work` gives for each task, as `working` does, once."""
+    with working(work, min(workers, len(tasks)), warn) as answers:
+        yield from answers(tasks)
 
 
 def start_fault(workers: int) -> str:
@@ -143,8 +151,8 @@ def _let(transfer: Callable[..., Any], *values: object) -> Any:
         return transfer(*values)
     except GONE as error:
         raise AffcliError(
-            "a worker process died, perhaps memory ran out; the robots before are saved: run "
-            "the command again, with fewer --workers, or with --workers 1"
+            "a worker process died, perhaps memory ran out; what was saved is kept: run the "
+            "command again, with fewer --workers, or with --workers 1"
         ) from error
 
 

@@ -6,7 +6,7 @@ from typing import Any
 from affcli.core.records import LearningRunInfo
 from affcli.core.results import BehaviorGroup
 from affcli.report.sheet import Sheet
-from affcli.report.words import call_words, clock, degrees_of, many, run_words
+from affcli.report.words import call_words, clock, degrees_of, many, run_words, settings_words
 
 
 def groups_table(run: LearningRunInfo, groups: Iterable[BehaviorGroup]) -> Sheet:
@@ -79,9 +79,12 @@ def run_json(run: LearningRunInfo) -> dict[str, Any]:
     spec = run.spec
     return {
         "run": run.id,
+        "session": run.session_id,
         "tool": spec.tool,
         "seed": spec.seed,
         "status": run.status,
+        "begun": run.started_at,
+        "note": run.note,
         "behaviors": run.behaviors,
         "rows": run.rows,
         "resets": run.resets,
@@ -90,5 +93,6 @@ def run_json(run: LearningRunInfo) -> dict[str, Any]:
         "binding": str(spec.binding),
         "explorer": str(spec.explorer),
         "sensor": spec.sensor,
+        "settings": settings_words(spec.settings),
         "repertoire": [str(one.call) for one in spec.repertoire],
     }

@@ -13,7 +13,6 @@ from affcli.report.learning import groups_json, groups_table, learned_table, run
 from affcli.report.reproduction import failures_table, reproduction_json, reproduction_tables
 from affcli.report.sheet import Sheet
 from affcli.report.trials import counts_tables
-from affcli.report.words import settings_words
 
 
 def overview_tables(overview: Overview) -> list[RenderableType]:
@@ -81,7 +80,6 @@ def overview_json(overview: Overview) -> dict[str, Any]:
         "learned": [
             {
                 **run_json(run),
-                "settings": settings_words(run.spec.settings),
                 "groups": groups_json(groups),
             }
             for run, groups in overview.learned

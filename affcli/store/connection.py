@@ -183,5 +183,7 @@ def numbered(
     if not found:
         last = connection.scalar(sa.select(sa.func.max(table.c.id)))
         known = f"they are numbered 1 to {last}" if last else "there are none yet"
+        # No id is given twice.
+        known = "it was deleted" if number <= (last or 0) else known
         raise UsageError(f"no {what} {number}; {known}")
     return found[0]

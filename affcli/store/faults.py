@@ -22,6 +22,9 @@ CLASH = (
     "its records contradict one another, which affcli did not write; `affcli db check` may show "
     "where; restore a copy of the file"
 )
+DELETED = (
+    "what a record belongs to is not there, perhaps it was deleted meanwhile; run the command again"
+)
 
 REMEDIES = {
     sqlite3.SQLITE_READONLY_ROLLBACK: INTERRUPTED_WRITE,
@@ -39,7 +42,7 @@ REMEDIES = {
     sqlite3.SQLITE_NOTADB: "not a SQLite database; name another file with --db",
     sqlite3.SQLITE_CONSTRAINT_UNIQUE: CLASH,
     sqlite3.SQLITE_CONSTRAINT_PRIMARYKEY: CLASH,
-    sqlite3.SQLITE_CONSTRAINT_FOREIGNKEY: CLASH,
+    sqlite3.SQLITE_CONSTRAINT_FOREIGNKEY: DELETED,
     sqlite3.SQLITE_NOLFS: "too large for this file system; move it to another",
 }
 """By SQLite's result code. What is not listed is a bug and keeps its traceback."""
@@ -89,8 +92,8 @@ def faults_named(path: Path, waited: float) -> Iterator[None]:
                 f"{one_line(path)}: damaged, {said}; restore a copy of the file"
             ) from error
         remedy = REMEDIES.get(code) or REMEDIES.get(code & PRIMARY)
-        if remedy is CLASH:
-            remedy = f"{one_line(said)}: {CLASH}"
+        if remedy in (CLASH, DELETED):
+            remedy = f"{one_line(said)}: {remedy}"
         if remedy is not None:
             raise DatabaseError(f"{one_line(path)}: {remedy}") from error
         raise

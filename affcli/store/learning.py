@@ -115,9 +115,12 @@ class Learning:
 
         Raises:
             DatabaseError: the chunk could not be saved; what was saved before is kept.
+            UsageError: the run was deleted meanwhile.
         """
         with self.database.writing() as connection:
-            (row,) = mappings(connection, sa.select(learning_run).filter_by(id=run_id))
+            row = numbered(
+                connection, sa.select(learning_run), learning_run, "learning run", run_id
+            )
             if row["behaviors"] > after_step or row["status"] == "done":
                 return False
             if row["behaviors"] < after_step:

@@ -26,6 +26,7 @@ from affcli.store.learning import Learning
 from affcli.store.lock_retry import LONGEST_WAIT, retried
 from affcli.store.migrate import run_migrations
 from affcli.store.results import Results
+from affcli.store.runs import Runs
 from affcli.store.selections import Selections
 from affcli.store.sessions import Sessions
 from affcli.store.trials import Trials
@@ -49,6 +50,8 @@ class Store:
         """Sessions, and the robots of reproductions."""
         self.learning = Learning(database)
         """Learning runs, with the behaviors and the rows of each."""
+        self.runs = Runs(database)
+        """Learning runs as a person keeps them: their notes, what used them."""
         self.trials = Trials(database)
         """Testing trials, with the steps of each."""
         self.verifications = Verifications(database)

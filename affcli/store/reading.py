@@ -177,7 +177,7 @@ def learning_run(row: Columns) -> LearningRunInfo:
     """Return a learning run; `row` has the definition of its tool too."""
     names = (
         *("id", "session_id", "status", "behaviors", "rows", "resets", "redraws"),
-        "robot_seconds",
+        *("robot_seconds", "started_at", "note"),
     )
     with reading_what_was_written(f"learning run {row['id']}"):
         return LearningRunInfo(

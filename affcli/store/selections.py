@@ -23,9 +23,13 @@ class Selections:
     database: Database
 
     def rows(self, wanted: RowFilter) -> tuple[StoredRow, ...]:
-        """Return the rows that the filter leaves, oldest first."""
+        """Return the rows that the filter leaves, run by run, oldest first."""
         ids = _rows(wanted).with_only_columns(wide.c.id)
-        rows = sa.select(affordance).where(affordance.c.id.in_(ids)).order_by(affordance.c.id)
+        rows = (
+            sa.select(affordance)
+            .where(affordance.c.id.in_(ids))
+            .order_by(affordance.c.learning_run_id, affordance.c.id)
+        )
         return tuple(map(stored_row, self.database.mappings(rows)))
 
     def extract(
@@ -59,7 +63,7 @@ def _kind(declared: str) -> type[int] | type[float] | type[str]:
 def _rows(wanted: RowFilter) -> sa.Select[Any]:
     """Select the rows of the affordance tables."""
     c = wide.c
-    statement = _whole(wide, wanted).where(_learned_in(c.run, wanted)).order_by(c.id)
+    statement = _whole(wide, wanted).where(_learned_in(c.run, wanted)).order_by(c.run, c.id)
     if wanted.behavior is not None:
         statement = statement.where(c.exploratory_behavior == wanted.behavior.name)
         if wanted.behavior.params:

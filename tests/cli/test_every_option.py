@@ -7,12 +7,15 @@ from typing import Any
 import pytest
 
 from affcli.cli.app import program
-from tests.cli.program import affcli, names_in, one_printable_line, refused
+from tests.cli.program import affcli, names_in, one_printable_line, refused, rows
 
 DROP = "x'); DROP TABLE learning_run; --"
 REQUIRED = {"--goal": "1", "--out": "out.csv", "query": "select 1", "row": "1", "number": "1"}
 REQUIRED |= {"--robots": "1", "--workers": "1"}  # all else would be done, too, and take its time
 REQUIRED |= {"row_id": "1", "--calibration": "none.json", "image": "none.png"}
+REQUIRED |= {"run_id": "1", "text": "x"}
+FREE = "text"
+"""An argument that may be any text: a note."""
 ELSEWHERE = ("--db", "--out", "--html", "--gif", "--video")
 """Options that name a file to be written: such a file may have any name."""
 
@@ -69,6 +72,9 @@ def test_sql_is_inert_wherever_it_is_given(
     assert ended.code in {0, 2, 3, 4}, ended
     if ended.code:
         one_printable_line(ended.err)
+    if name == FREE:
+        assert rows(learned, "SELECT note FROM learning_run WHERE id = 1") == [(DROP,)]
+        return
     assert learned.read_bytes() == before
     if name not in ELSEWHERE:
         assert ended.code, ended

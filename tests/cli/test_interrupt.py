@@ -234,6 +234,51 @@ def test_workers_end_with_their_parent(signum: signal.Signals, tmp_path: Path) -
         assert stopped(process, signum) == Ended(128 + signum, "", GOES_ON)
 
 
+SEVERAL = ("learn", "--tool", "stick", "--tool", "l-stick", "--tool", "t-stick", "--behaviors")
+
+
+def test_several_tools_give_the_same_store_for_any_number_of_workers(tmp_path: Path) -> None:
+    """Of more than a chunk each, which are saved in turn; one of them was begun before."""
+    stores = []
+    for workers in ("1", "2", "9"):
+        database = tmp_path / f"{workers}.db"
+        done("learn", "--tool", "l-stick", "--behaviors", "20", "--db", database)
+        ended = done(*SEVERAL, "700", "--workers", workers, "--db", database)
+        assert [line.split(" (")[0] for line in ended.err.splitlines()] == [
+            *("learned stick", "learned l-stick", "learned t-stick")
+        ]
+        stores.append(contents(database))
+    assert stores[0] == stores[1] == stores[2]
+
+
+@pytest.mark.fault(2)
+@pytest.mark.fault(3)
+def test_several_tools_that_were_interrupted_go_on(tmp_path: Path) -> None:
+    """Stopped, then a worker killed, then the program killed: all that was saved is kept."""
+    database, alone = tmp_path / "my.db", tmp_path / "alone.db"
+    command = (*SEVERAL, "2500", "--workers", "2", "--db", database)
+    with started(*command) as process:
+        wait_until(more_than(0, partial(saved, database)), process)
+        assert stopped(process, signal.SIGINT) == Ended(130, "", GOES_ON)
+    kept = saved(database)
+    with started(*command) as process:
+        wait_until(more_than(kept, partial(saved, database)), process)
+        os.kill(children_of(process.pid, "serve")[0], signal.SIGKILL)
+        ended = ending(process)
+    assert (ended.code, ended.out) == (1, "")
+    assert "a worker process died" in one_printable_line(ended.err)
+    before, kept = kept, saved(database)
+    assert kept > before
+    with started("learn", "--resume", "--workers", "2", "--db", database) as process:
+        wait_until(more_than(kept, partial(saved, database)), process)
+        process.kill()
+        ending(process)
+    assert rows(database, "PRAGMA integrity_check") == [("ok",)]
+    done(*command)
+    done(*SEVERAL, "2500", "--db", alone)
+    assert by_key(database) == by_key(alone)
+
+
 @pytest.mark.fault(3)
 @pytest.mark.parametrize("delay", [0.0, 0.3, 0.6])
 def test_ctrl_c_reaches_workers_that_are_just_starting(delay: float, tmp_path: Path) -> None:

@@ -44,8 +44,8 @@ def test_json_holds_the_same_and_nothing_else_is_on_stdout(tmp_path: Path) -> No
     assert isinstance(groups, list)
     assert sum(group["tried"] for group in groups) == again["behaviors"] == 60
     assert sum(group["rows"] for group in groups) == again["rows"]
-    ((behaviors, made, resets, seconds),) = rows(
-        database, "SELECT behaviors, rows, resets, robot_seconds FROM learning_run"
+    ((behaviors, made, resets, seconds, begun),) = rows(
+        database, "SELECT behaviors, rows, resets, robot_seconds, started_at FROM learning_run"
     )
     assert again == {
         "run": 1,
@@ -61,6 +61,10 @@ def test_json_holds_the_same_and_nothing_else_is_on_stdout(tmp_path: Path) -> No
         "explorer": "random",
         "binding": "grasp 1",
         "repertoire": [f"{name} {inches}" for name in BEHAVIORS for inches in (2, 5)],
+        "settings": "defaults",
+        "session": None,
+        "begun": begun,
+        "note": None,
     }
 
 

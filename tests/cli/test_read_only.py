@@ -14,7 +14,7 @@ from tests.cli.program import ROOT, Ended, environment, names_in, one_printable_
 
 READING = (
     *(("report",), ("sql", "select count(*) from affordance"), ("db", "info")),
-    *(("table", "list"), ("table", "show", "1"), ("table", "export")),
+    *(("table", "list"), ("table", "show", "1"), ("table", "export"), ("runs", "list")),
     *(
         ("verify", "--rows", "9"),
         ("predict", "--pushes", "9"),
@@ -26,6 +26,8 @@ WRITING = (
     ("solve", "--goal", "2"),
     ("break-tool",),
     ("verify", "--update"),
+    ("runs", "note", "1", "x"),
+    ("runs", "delete", "1", "--yes"),
     ("reproduce", "--robots", "1"),
     ("db", "upgrade"),
 )

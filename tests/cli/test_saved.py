@@ -33,10 +33,11 @@ LEARN = ("learn", "--tool", "stick", "--behaviors", "60")
     [
         (("learn", "--tool", "l-hook", "--behaviors", "60"), "learned l-hook"),
         (("solve", "--goal", "4", "--start", "1", "--tool", "t-hook"), "trial 1 saved"),
+        (("runs", "delete", "2", "--yes"), "deleted run 2"),
         (("db", "backup"), "a copy of"),
         (("db", "upgrade"), "is up to date"),
     ],
-    ids=["learn", "solve", "backup", "upgrade"],
+    ids=["learn", "solve", "delete", "backup", "upgrade"],
 )
 def test_the_disk_has_confirmed_it_before_a_word_is_said(
     args: tuple[str, ...], word: str, learned: Path, tmp_path: Path
@@ -132,6 +133,7 @@ def test_learning_on_a_full_disk_keeps_its_chunks_and_goes_on_with_room(tmp_path
         ("solve", "--goal", "2"),
         ("break-tool",),
         ("verify", "--update", "--rows", "200"),
+        ("runs", "delete", "1", "--yes"),
         ("reproduce", "--robots", "1", "--workers", "1"),
         ("learn", "--tool", "l-stick", "--behaviors", "600"),
         ("db", "upgrade"),

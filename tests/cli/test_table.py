@@ -344,6 +344,7 @@ SHOWING = (("list", "--all-runs"), ("show", "1"))
 WORDS = {
     "affordance": ("tool", "exploratory_behavior", "binding_behavior"),
     "step": ("placing_status", "status"),
+    "learning_run": ("note", "started_at"),
 }
 
 
@@ -360,6 +361,9 @@ def test_whatever_words_stand_in_the_database_they_command_nothing(text: str, us
             ended = done("table", *args, "--db", used, COLUMNS=width)
             assert all(line.isprintable() for line in ended.out.splitlines())
         assert done("table", *args, "--json", "--db", used).results
+    for words in (("list",), ("show", "1")):
+        shown = done("runs", *words, "--db", used, COLUMNS="40").out
+        assert all(line.isprintable() for line in shown.splitlines())
     (first, *_) = listed(used, "--all-runs")
     assert (first["tool"], first["behavior"]) == (one_line(text, 20_000),) * 2
     assert rows(used, "SELECT count(*) FROM affordance") != [(0,)]

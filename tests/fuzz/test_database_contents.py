@@ -85,6 +85,7 @@ DEEPER = (
     *("figure trial 9 --out new.svg", "figure affordances --run 1 --out new.svg", "db backup"),
     *("figure affordances --run 1 --after-trial 2 --out new.svg", "figure row 3 --out new.svg"),
     *("figure learning --out new.svg", "figure results --out new.svg", "table list --all-runs"),
+    *("runs list --all-runs", "runs show 1", "runs note 1 x", "runs delete 2 --yes"),
     *("figure adaptation --out new.svg", "table export --what steps", "table export --what trials"),
 )
 """What reads most of a database; beside calls drawn at random, which reach it seldom."""

@@ -64,6 +64,7 @@ def learned_run(number: int, spec: LearningSpec, **changes: Any) -> LearningRunI
         redraws=0,
         robot_seconds=3601.2,
         checkpoint=None,
+        started_at="2026-01-02T03:04:05+00:00",
     )
     return replace(run, **changes)
 

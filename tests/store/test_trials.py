@@ -357,6 +357,7 @@ def test_a_packed_robot_is_saved_as_the_robot_itself(store: Store, empty_databas
     with store.database.writing() as connection:
         for table in ("step", "trial", "affordance", "behavior", "learning_run"):
             connection.exec_driver_sql(f"DELETE FROM {table}")
+        connection.exec_driver_sql("DELETE FROM sqlite_sequence WHERE name <> 'session'")
     store.sessions.save_robot(session, pack_robot(robot_record(0)), VERSIONS, NOW)
     assert everything(store) == plain
 

@@ -109,7 +109,7 @@ def test_the_schema_is_what_the_code_expects(empty_database: Path) -> None:
     views = {
         name for (name,) in driver.execute("SELECT name FROM sqlite_master WHERE type = 'view'")
     }
-    assert tables == {table.name for table in TABLES} | {"alembic_version"}
+    assert tables == {table.name for table in TABLES} | {"alembic_version", "sqlite_sequence"}
     assert {table.name for table in TABLES} | views == RELATIONS
     assert driver.execute("PRAGMA application_id").fetchone() == (APPLICATION_ID,)
     if sqlite3.sqlite_version_info >= (3, 37):

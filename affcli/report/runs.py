@@ -1,0 +1,113 @@
+"""Learning runs as they are kept: what each is, what used it, and its note."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from affcli.core.records import Belongings, LearningRunInfo
+from affcli.core.results import BehaviorGroup
+from affcli.report.learning import groups_json, groups_table, run_json
+from affcli.report.sheet import Sheet
+from affcli.report.words import call_words, clock, many, run_words
+
+Uses = Mapping[int, tuple[int, int]]
+"""How many trials and verifications used a run, by its id; of those used at all."""
+
+
+def runs_table(runs: Sequence[LearningRunInfo], uses: Uses) -> Sheet:
+    """Return the runs, one a line, with what in each is not the usual, and its note."""
+    counts = ("minutes", "tried", "rows", "trials")
+    table = Sheet(
+        ("run", "tool", "seed", *counts, "begun", "what differs; note"),
+        caption="minutes: of the robot; tried: behaviors; trials: that used its table",
+        left=("tool", "begun", "what differs; note"),
+    )
+    for run in runs:
+        table.add(
+            str(run.id),
+            run.spec.tool,
+            str(run.spec.seed),
+            f"{run.robot_seconds / 60.0:.1f}",
+            *(str(run.behaviors), str(run.rows), str(uses.get(run.id, (0, 0))[0])),
+            run.started_at[:10],
+            "; ".join(_unusual(run)) or "defaults",
+        )
+    return table
+
+
+def _unusual(run: LearningRunInfo) -> Iterator[str]:
+    """Yield what is to be said of a run beside its numbers."""
+    if run.status != "done":
+        yield "unfinished"
+    if run.session_id is not None:
+        yield f"robot {run.spec.robot} of session {run.session_id}"
+    if (words := run_words(run.spec)) != "defaults":
+        yield words
+    if run.note:
+        yield f'"{run.note}"'
+
+
+def run_tables(
+    run: LearningRunInfo, belongings: Belongings, groups: Sequence[BehaviorGroup]
+) -> tuple[Sheet, ...]:
+    """Return one run in full, and what it learned by behavior."""
+    spec = run.spec
+    wanted = (
+        f"{spec.hours:g} h" if spec.hours is not None else many(spec.behaviors or 0, "behavior")
+    )
+    part = "" if run.session_id is None else f", robot {spec.robot} of session {run.session_id}"
+    facts = {
+        "tool": spec.tool,
+        "note": run.note or "none",
+        "status": run.status if run.status == "done" else "unfinished; --resume goes on",
+        "begun": f"{run.started_at[:16].replace('T', ' ')} UTC",
+        "asked for": f"{wanted}, seed {spec.seed}{part}",
+        "did": f"{clock(run.robot_seconds)}, {many(run.behaviors, 'behavior')}, "
+        f"{many(run.rows, 'row')}, {many(run.resets, 'reset')}",
+        "differs from the defaults": run_words(spec),
+        "binding": call_words(spec.binding),
+        "behaviors": ", ".join(call_words(one.call) for one in spec.repertoire),
+        "made with": ", ".join(f"{name} {one}" for name, one in run.versions.items()),
+        "used by": use_words(belongings),
+    }
+    sheet = Sheet(tuple(facts), title=f"Run {run.id}", records=True)
+    sheet.add(*facts.values())
+    return sheet, groups_table(run, groups)
+
+
+def use_words(belongings: Belongings) -> str:
+    """Return in words what used the table of a run."""
+    used = (
+        (belongings.trials, "trial", f" ({many(belongings.steps, 'step')})"),
+        (belongings.verifications, "verification", f" ({many(belongings.tries, 'try')})"),
+    )
+    return " and ".join(f"{many(n, noun)}{of}" for n, noun, of in used if n) or "nothing"
+
+
+def belongings_words(belongings: Belongings) -> str:
+    """Return in words what is deleted with a run."""
+    made = f"{many(belongings.behaviors, 'behavior')}, {many(belongings.rows, 'row')}"
+    used = use_words(belongings)
+    return made if used == "nothing" else f"{made}, {used}"
+
+
+def kept_json(run: LearningRunInfo, uses: Uses) -> dict[str, Any]:
+    """Return a line of `runs_table` as JSON types."""
+    trials, verifications = uses.get(run.id, (0, 0))
+    return {**run_json(run), "trials": trials, "verifications": verifications}
+
+
+def run_in_full_json(
+    run: LearningRunInfo, belongings: Belongings, groups: Sequence[BehaviorGroup]
+) -> dict[str, Any]:
+    """Return what `run_tables` shows as JSON types."""
+    spec = run.spec
+    return {
+        **kept_json(run, {run.id: (belongings.trials, belongings.verifications)}),
+        "robot": spec.robot,
+        "hours": spec.hours,
+        "behaviors_limit": spec.behaviors,
+        "versions": run.versions,
+        "steps": belongings.steps,
+        "tries": belongings.tries,
+        "groups": groups_json(groups),
+    }
