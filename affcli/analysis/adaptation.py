@@ -6,7 +6,7 @@ from itertools import accumulate
 from statistics import fmean
 
 from affcli.analysis.statistics import ENOUGH_ROBOTS, mean_interval, wilson
-from affcli.core.records import SessionInfo
+from affcli.core.records import LearningRunInfo, SessionInfo
 from affcli.core.results import StepSums, TrialGroup
 
 
@@ -53,6 +53,7 @@ class AdaptationCourse:
         shares: of the broken tool's trials, by step number.
         broken, whole: probabilities with the broken tool and with the whole one; none when there
             is no missing side, no row lies on it, or there are no such trials.
+        run: the learning run whose table they used; None where each robot has its own.
     """
 
     session: SessionInfo
@@ -62,6 +63,7 @@ class AdaptationCourse:
     shares: tuple[Share, ...]
     broken: tuple[MeanProbability, ...]
     whole: tuple[MeanProbability, ...]
+    run: LearningRunInfo | None = None
 
     @classmethod
     def of(
@@ -71,13 +73,14 @@ class AdaptationCourse:
         shape: str,
         broken: Sequence[TrialGroup],
         whole: Sequence[TrialGroup],
+        run: LearningRunInfo | None = None,
     ) -> "AdaptationCourse":
         """Sum up trials with the broken tool and with the whole one."""
         shares = shares_of(broken)
         last = shares[-1].number if shares else 0
         trials = sum(group.trials for group in broken)
         courses = (probabilities_of(groups, last) for groups in (broken, whole))
-        return cls(session, tool, shape, trials, shares, *courses)
+        return cls(session, tool, shape, trials, shares, *courses, run)
 
 
 def has_intervals(groups: Sequence[TrialGroup]) -> bool:

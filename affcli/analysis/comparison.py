@@ -17,7 +17,7 @@ from affcli.analysis.paper import (
 from affcli.analysis.reproduction import Reproduction
 from affcli.analysis.statistics import ENOUGH_ROBOTS, Spread
 from affcli.core.records import SessionInfo, TrialInfo
-from affcli.core.specs import Protocol
+from affcli.core.specs import LearningSpec, Protocol
 from affcli.core.trial import Outcome, is_counted
 
 
@@ -60,7 +60,7 @@ class Results:
     Args:
         session: the reproduction; None when each tool was learned by itself.
         robots: how many; 1 when each tool was learned by itself.
-        runs: of single robots, the learning runs by sensor.
+        runs: of single robots, the learning runs by the sensor of the trials, and by number.
         cells: by (tool, goal).
         total: of the paper's 80 trials, or where it has none of all; None when some were not done.
         broken: of the trials with the broken tool; None when they were not done.
@@ -68,7 +68,7 @@ class Results:
 
     session: SessionInfo | None
     robots: int
-    runs: Mapping[str, Sequence[int]]
+    runs: Mapping[str, Mapping[int, LearningSpec]]
     cells: Mapping[tuple[str, str], Beside]
     total: Beside | None
     broken: Beside | None
@@ -142,10 +142,9 @@ def results_of_single(
         for cell, some in tried.items()
     }
     solved_broken = sum(trial.outcome is Outcome.SOLVED for trial in broken.values())
-    runs: dict[str, list[int]] = {
-        sensor: sorted({trial.run_id for trial in whole.values() if trial.spec.sensor == sensor})
-        for sensor in sorted({trial.spec.sensor for trial in whole.values()})
-    }
+    runs: dict[str, dict[int, LearningSpec]] = {}
+    for trial in sorted(whole.values(), key=lambda trial: (trial.spec.sensor, trial.run_id)):
+        runs.setdefault(trial.spec.sensor, {})[trial.run_id] = trial.learned
     return Results(
         *(None, 1, runs, cells),
         _papers_total(cells) if papers else _sum(cells.values()),

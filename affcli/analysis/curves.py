@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import accumulate
 from statistics import fmean
 
-from affcli.analysis.statistics import HIGH, LOW, quantile
+from affcli.analysis.statistics import ENOUGH_ROBOTS, HIGH, LOW, mean_interval, quantile
 from affcli.core.records import LearningRunInfo
 from affcli.core.results import LearningInterval
 
@@ -67,22 +67,29 @@ class Band:
     Args:
         mean: over the robots.
         low, high: the central 95 % of robots, as in the tables of `reproduce`.
+        mean_low, mean_high: 95 % interval of the mean; NaN where there are too few robots.
     """
 
     mean: Sequence[float]
     low: Sequence[float]
     high: Sequence[float]
+    mean_low: Sequence[float]
+    mean_high: Sequence[float]
 
     @classmethod
     def of(cls, lines: Sequence[Sequence[float]]) -> "Band":
         """Summarise lines of one length, one for each robot; NaN where a robot has none."""
-        mean, low, high = [], [], []
-        for values in zip(*lines, strict=True):
-            known = not any(map(math.isnan, values))
-            mean.append(fmean(values) if known else math.nan)
-            low.append(quantile(values, LOW) if known else math.nan)
-            high.append(quantile(values, HIGH) if known else math.nan)
-        return cls(mean, low, high)
+        points = [_point(values) for values in zip(*lines, strict=True)]
+        return cls(*([point[i] for point in points] for i in range(5)))
+
+
+def _point(values: Sequence[float]) -> tuple[float, float, float, float, float]:
+    """Return the numbers of a band at one time."""
+    if any(map(math.isnan, values)):
+        return (math.nan,) * 5
+    certain = mean_interval(values) if len(values) >= ENOUGH_ROBOTS else None
+    spread = quantile(values, LOW), quantile(values, HIGH)
+    return fmean(values), *spread, *(certain or (math.nan, math.nan))
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,9 @@
 """The paper's own results and parts (§5 to §7), and what of ours may stand beside them."""
 
 import json
+from collections.abc import Callable, Iterable
 from types import MappingProxyType
+from typing import TypeVar
 
 from affcli.core.behavior import GRASP
 from affcli.core.results import SuccessCount
@@ -13,6 +15,8 @@ from affcli.core.specs import (
     SessionSpec,
     TrialSpec,
 )
+
+Thing = TypeVar("Thing")
 
 GOALS = ("1", "2", "3", "4")
 STARTS = 4
@@ -41,15 +45,24 @@ TOTAL, TRIALS = sum(EXTENSION_OF_REACH.values()), STARTS * len(EXTENSION_OF_REAC
 BROKEN, BROKEN_TRIALS = 16, STARTS * len(GOALS)
 """16 of 16 with the T-hook that had become an L-hook (§7.2)."""
 
-BEHAVIORS = tuple(
-    f"{name} {distance}"
-    for name in ("extend arm", "contract arm", "slide arm left", "slide arm right")
-    for distance in (2, 5)
-)
+BEHAVIOR_NAMES = ("extend arm", "slide arm left", "slide arm right", "contract arm")
+"""In the order of Fig. 6."""
+BEHAVIORS = tuple(f"{name} {distance}" for name in BEHAVIOR_NAMES for distance in (2, 5))
 """The exploratory behaviors that make rows, each with its distance in inches (§5)."""
 
 _HANDLE_BELOW_GRASP = 1.0
 """Where on the handle the paper's grasp is unless the settings say otherwise (in)."""
+
+
+def in_papers_order(things: Iterable[Thing], name: Callable[[Thing], str]) -> list[Thing]:
+    """Return things of the paper's tools or behaviors in its order, then the others as they came.
+
+    Args:
+        things: in any order.
+        name: of the tool or the behavior of a thing.
+    """
+    places = {name: place for place, name in enumerate((*TOOLS, *BEHAVIOR_NAMES))}
+    return sorted(things, key=lambda thing: places.get(name(thing), len(places)))
 
 
 def papers_cell(of: SuccessCount | TrialSpec) -> bool:

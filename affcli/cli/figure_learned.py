@@ -1,6 +1,7 @@
 """``affcli figure``: what was learned (Figs. 5 and 6), and the laboratory (Figs. 1, 8 and 9)."""
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -9,19 +10,16 @@ import typer
 from affcli import lab, registry
 from affcli import store as stores
 from affcli.cli.database import learned_runs, opened
-from affcli.cli.files import require_new, save
+from affcli.cli.figure import Figure, figure
 from affcli.cli.options import (
     DEFAULT_BROKEN,
     DEFAULT_DATABASE,
     DEFAULT_TOOL,
-    FIGURE_ENDINGS,
     LARGEST_ID,
     Becomes,
     Changes,
     Config,
     Database,
-    FigureOut,
-    Force,
     Run,
     check_count,
     check_if_given,
@@ -29,13 +27,18 @@ from affcli.cli.options import (
     checked_tool,
     checked_tools,
 )
-from affcli.cli.terminal import say
 from affcli.config import load_settings
+from affcli.core.identity import canonical_json
 from affcli.core.records import LearningRunInfo
-from affcli.errors import UsageError, one_line
-from affcli.lab.drawing import require_figures
+from affcli.errors import UsageError
 from affcli.report import figures
-from affcli.report.figure_titles import curves_title, robots_title
+from affcli.report.captions import (
+    curves_words,
+    kinds_words,
+    robots_words,
+    tools_words,
+    workspace_words,
+)
 from affcli.simulation.arm import reach_at
 from affcli.simulation.tasks.extension_of_reach import extension_of_reach
 
@@ -55,9 +58,9 @@ def _checked_ids(runs: Sequence[int] | None) -> list[int]:
     return [checked_count("--run", run, LARGEST_ID) for run in runs or ()]
 
 
+@figure
 def affordances(
     *,
-    out: FigureOut,
     run: Run = None,
     tool: OneTool = None,
     compare: Annotated[
@@ -79,8 +82,7 @@ def affordances(
         ),
     ] = None,
     database: Database = DEFAULT_DATABASE,
-    force: Force = False,
-) -> None:
+) -> Figure:
     """Draw what a tool affords, as arrows over its outline.
 
     As in Fig. 6, an arrow for each row: where the attractor was from the wrist, and how it moved.
@@ -94,7 +96,6 @@ def affordances(
         raise UsageError("give --run or --tool, not both")
     if after_trial is not None and (run, tool, compare) != (None, None, None):
         raise UsageError("--after-trial has a run: leave out --run, --tool and --compare")
-    check_out(out, force=force)
     with opened(database) as store:
         if after_trial is not None:
             shown = lab.affordance_views.tables_around_trial(store, after_trial)
@@ -106,10 +107,11 @@ def affordances(
                 )
             else:
                 shown = lab.affordance_views.table_of_run(store, chosen)
-    figure = figures.affordances.affordances_figure(shown.calls, shown.views, shown.key)
-    save_figure(out, figure, shown.title)
+    draw = figures.affordances.affordances_figure
+    return Figure(shown.words, partial(draw, shown.calls, shown.views, shown.key))
 
 
+@figure
 def row(
     *,
     row: Annotated[
@@ -118,23 +120,20 @@ def row(
             help="A row's id in the database.", metavar="ID", callback=check_count("row")
         ),
     ],
-    out: FigureOut,
     database: Database = DEFAULT_DATABASE,
-    force: Force = False,
-) -> None:
+) -> Figure:
     """Draw one row of an affordance table.
 
     As in Fig. 5. `affcli sql "select * from affordance_table"` shows the rows with their ids.
     """
-    check_out(out, force=force)
     with opened(database) as store:
-        title, view = lab.affordance_views.row_shown(store, row)
-    save_figure(out, figures.row.row_figure(view), title)
+        words, view = lab.affordance_views.row_shown(store, row)
+    return Figure(words, partial(figures.row.row_figure, view))
 
 
+@figure
 def workspace(
     *,
-    out: FigureOut,
     tool: Annotated[
         str,
         typer.Option(
@@ -143,25 +142,23 @@ def workspace(
     ] = DEFAULT_TOOL,
     config: Config = None,
     changes: Changes = None,
-    force: Force = False,
-) -> None:
+) -> Figure:
     """Draw the table: goals, starts, tool, reach of the arm.
 
     As in Fig. 8, as a trial begins.
     """
-    check_out(out, force=force)
-    place = load_settings(config, changes or ()).workspace
+    settings = load_settings(config, changes or ())
+    place = settings.workspace
     reach = reach_at(place.arm, place.arm.flange_height)
     lying = registry.tool(tool, place.tools)
     tasks = extension_of_reach(place.layout)
-    figure = figures.workspace.workspace_figure(place, lying, reach, tasks)
-    words = f"the bare arm reaches from {reach.inner:.1f} to {reach.outer:.1f} in"
-    save_figure(out, figure, f"the table with the {tool}; {words}")
+    draw = partial(figures.workspace.workspace_figure, place, lying, reach, tasks)
+    return Figure(workspace_words(lying, reach, canonical_json(settings.differing())), draw)
 
 
+@figure
 def tools(
     *,
-    out: FigureOut,
     tool: Annotated[
         str,
         typer.Option("--tool", help="The one that breaks.", metavar="NAME", callback=checked_tool),
@@ -169,25 +166,24 @@ def tools(
     becomes: Becomes = DEFAULT_BROKEN,
     config: Config = None,
     changes: Changes = None,
-    force: Force = False,
-) -> None:
+) -> Figure:
     """Draw the five tools to scale, and one that broke.
 
     As in Figs. 1 and 9, with the names of their parts.
     """
-    check_out(out, force=force)
-    place = load_settings(config, changes or ()).workspace
+    settings = load_settings(config, changes or ())
+    place = settings.workspace
     known = [registry.tool(name, place.tools) for name in registry.parts("tools")]
     whole, left = (registry.tool(name, place.tools) for name in (tool, becomes))
     if left.parts_missing_in(whole) or not whole.parts_missing_in(left):
         raise UsageError(f"--becomes {becomes}: a {tool} does not become that by losing parts")
-    figure = figures.tools.tools_figure(known, (whole, left), place.puck.radius)
-    save_figure(out, figure, f"{len(known)} tools, and a {tool} that became {becomes}")
+    draw = partial(figures.tools.tools_figure, known, (whole, left), place.puck.radius)
+    return Figure(tools_words(whole, left, canonical_json(settings.differing())), draw)
 
 
+@figure
 def learning(
     *,
-    out: FigureOut,
     run: Annotated[
         list[int] | None,
         typer.Option(
@@ -213,40 +209,29 @@ def learning(
         ),
     ] = None,
     database: Database = DEFAULT_DATABASE,
-    force: Force = False,
-) -> None:
+) -> Figure:
     """Draw how learning went over robot time.
 
     Rows made, and the share of behaviors that had an effect so far.
 
-    One line for each learning run; with --session the mean of many robots and the central 95 % of
-    them.
+    One line for each learning run. Of more than 12, and with --session of the robots of a
+    reproduction, the mean with its 95 % interval and the central 95 % of robots, a panel a tool.
     """
     if run and (tool or session is not None):
         raise UsageError("give --run alone, without --tool and --session")
-    check_out(out, force=force)
     names = tool or ()
     with opened(database) as store:
         if session is not None:
-            info, tools = lab.learning_curves.curves_of_robots(store, session, names)
-            title, figure = robots_title(info, tools), figures.learning.bands_figure(tools)
-        else:
-            runs = _runs_to_draw(store, run or (), names, database)
-            curves = lab.learning_curves.curves_of(store, runs)
-            title, figure = curves_title(curves), figures.learning.curves_figure(curves)
-    save_figure(out, figure, title)
-
-
-def check_out(out: Path, *, force: bool) -> None:
-    """Make sure, before any work, that a figure can be drawn and has a place."""
-    require_new(out, force=force, endings=FIGURE_ENDINGS)
-    require_figures()
-
-
-def save_figure(out: Path, figure: "figures.canvas.Drawing", title: str) -> None:
-    """Write a figure and say what it shows."""
-    save(out, figures.canvas.encoded(figure, out.suffix))
-    say(f"{title}: {one_line(out)}")
+            info, kinds = lab.learning_curves.curves_of_robots(store, session, names)
+            words = robots_words(info, max(kind.robots for kind in kinds))
+            return Figure(words, partial(figures.learning.bands_figure, kinds))
+        curves = lab.learning_curves.curves_of(
+            store, _runs_to_draw(store, run or (), names, database)
+        )
+    if len(curves) > figures.learning.MOST_CURVES:
+        kinds = lab.learning_curves.by_kind(curves)
+        return Figure(kinds_words(curves), partial(figures.learning.bands_figure, kinds))
+    return Figure(curves_words(curves), partial(figures.learning.curves_figure, curves))
 
 
 def _chosen_run(
@@ -280,10 +265,4 @@ def _runs_to_draw(
                 f"no learning runs but of robots: --session {reproduced[-1].id} draws these"
             )
         learned_runs(store, tools[0] if tools else None, database)
-    most = figures.learning.MOST_CURVES
-    if len(runs) > most:
-        raise UsageError(
-            f"{len(runs)} runs are more than the {most} lines that can be told apart; "
-            "choose with --run or --tool"
-        )
     return runs

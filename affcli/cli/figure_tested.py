@@ -1,5 +1,6 @@
 """``affcli figure trial``, ``results`` and ``adaptation``: figures of testing trials (§7)."""
 
+from functools import partial
 from typing import Annotated
 
 import typer
@@ -7,20 +8,16 @@ import typer
 from affcli import lab
 from affcli.analysis.statistics import ENOUGH_ROBOTS
 from affcli.cli.database import opened
-from affcli.cli.figure_learned import check_out, save_figure
-from affcli.cli.files import save
+from affcli.cli.figure import Figure, figure
 from affcli.cli.options import (
     DEFAULT_DATABASE,
     Database,
-    FigureOut,
-    Force,
     check_count,
     checked_range,
 )
-from affcli.cli.terminal import say
-from affcli.errors import BadInputError, one_line
+from affcli.errors import BadInputError
 from affcli.report import figures
-from affcli.report.figure_titles import course_note, course_title, results_note, results_title
+from affcli.report.captions import Words, adaptation_words, joined, results_words
 from affcli.report.film import MOST_NAMED, shown_of
 
 Session = Annotated[
@@ -34,6 +31,7 @@ Session = Annotated[
 ]
 
 
+@figure
 def trial(
     number: Annotated[
         int,
@@ -42,14 +40,12 @@ def trial(
         ),
     ],
     *,
-    out: FigureOut,
     steps: Annotated[
         str | None,
         typer.Option("--steps", help=f"Only these, {MOST_NAMED} at most.", metavar="A-B"),
     ] = None,
     database: Database = DEFAULT_DATABASE,
-    force: Force = False,
-) -> None:
+) -> Figure:
     """Draw a trial as a film strip, as in Figures 10 and 11.
 
     Over each panel: the step, its behavior and the row tried; whether it replicated, and the row's
@@ -60,22 +56,19 @@ def trial(
         raise BadInputError(
             f"--steps {steps}: at most {MOST_NAMED} steps fit a page; ask for fewer"
         )
-    check_out(out, force=force)
     with opened(database) as store:
         film = lab.film_strips.film_of(store, number, wanted)
     shown = shown_of(film.steps, wanted)
-    left_out = f"; {shown.note}" if shown.note else ""
-    figure = figures.trial.trial_figure(film, shown)
-    save_figure(out, figure, f"{film.title}; {film.course}{left_out}")
+    words = Words(film.title, joined(film.course, shown.note, film.caption))
+    return Figure(words, partial(figures.trial.trial_figure, film, shown))
 
 
+@figure
 def results(
     *,
-    out: FigureOut,
     session: Session = None,
     database: Database = DEFAULT_DATABASE,
-    force: Force = False,
-) -> None:
+) -> Figure:
     """Draw our intervals with the paper's counts.
 
     For the 20 cells, for all trials, and for the broken tool.
@@ -83,36 +76,29 @@ def results(
     They are those of a finished reproduction; where there is none, those of affcli solve, with one
     robot for each tool.
     """
-    check_out(out, force=force)
     with opened(database) as store:
         found = lab.results.results_in(store, session)
-    save(out, figures.canvas.encoded(figures.results.results_figure(found), out.suffix))
-    title = results_title(found)
+    note = ""
     if found.session is None:
-        say(
-            f"no finished reproduction, so results of {title}: {one_line(out)}; for those of many "
-            f"robots run affcli reproduce --robots {ENOUGH_ROBOTS}"
+        note = (
+            "; there is no finished reproduction; for results of many robots run "
+            f"affcli reproduce --robots {ENOUGH_ROBOTS}"
         )
-    else:
-        words = ", ".join(filter(None, (title, results_note(found))))
-        say(f"results, session {found.session.id}: {words}: {one_line(out)}")
+    return Figure(results_words(found), partial(figures.results.results_figure, found), note)
 
 
+@figure
 def adaptation(
     *,
-    out: FigureOut,
     session: Session = None,
     database: Database = DEFAULT_DATABASE,
-    force: Force = False,
-) -> None:
+) -> Figure:
     """Draw how robots adapt to a broken tool, step by step.
 
     It shows the share of tries on lost affordances, and the mean replication probability of the
     rows on the missing side, in a session of affcli break-tool or a reproduction.
     """
-    check_out(out, force=force)
     with opened(database) as store:
         course = lab.adaptation.adaptation_in(store, session)
-    words = ", ".join(filter(None, (course_title(course), course_note(course))))
-    figure = figures.adaptation.adaptation_figure(course)
-    save_figure(out, figure, f"adaptation, session {course.session.id}: {words}")
+    draw = partial(figures.adaptation.adaptation_figure, course)
+    return Figure(adaptation_words(course), draw)

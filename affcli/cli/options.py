@@ -266,6 +266,3 @@ Run = Annotated[
         "--run", help="The learning run of this id.", metavar="ID", callback=check_count("--run")
     ),
 ]
-FigureOut = Annotated[
-    Path, typer.Option("--out", help="The figure: *.png, *.svg or *.pdf.", metavar="FILE")
-]

@@ -34,7 +34,8 @@ def adaptation_in(store: Store, number: int | None) -> AdaptationCourse:
         store.results.trial_groups(session.id, tool, held, side, by_robot=by_robot)
         for held in (shape, tool)
     )
-    course = AdaptationCourse.of(session, tool, shape, broken, whole)
+    run = None if by_robot else store.learning.run(first.run_id)
+    course = AdaptationCourse.of(session, tool, shape, broken, whole, run)
     if not course.shares:
         raise UsageError(
             f"session {session.id}: no trial with the broken tool took a step; learn the {tool} "

@@ -1,10 +1,10 @@
 """A stored trial, gathered for its film strip."""
 
 from affcli.core.geometry import Pose
-from affcli.core.records import TrialInfo
 from affcli.core.tool import ToolPart, known_hold
 from affcli.errors import UsageError
 from affcli.lab.run_parts import require_shape, settings_of
+from affcli.report.captions import trial_words
 from affcli.report.film import FilmedTrial
 from affcli.report.words import call_words
 from affcli.store import Store
@@ -13,7 +13,7 @@ from affcli.store import Store
 def film_of(store: Store, trial_id: int, wanted: tuple[int, int] | None = None) -> FilmedTrial:
     """Return a trial with its steps, finished or not.
 
-    Without its tool when this affcli does not know how that was held; the title says so.
+    Without its tool when this affcli does not know how that was held; the caption says so.
 
     Args:
         store: open.
@@ -32,13 +32,16 @@ def film_of(store: Store, trial_id: int, wanted: tuple[int, int] | None = None) 
         _require_steps(trial_id, wanted, len(steps))
     spec, learned = info.spec, info.learned
     workspace, hold = settings_of(learned).workspace, known_hold(learned.binding)
+    title, caption = trial_words(info, store.learning.run(info.run_id))
     parts: tuple[ToolPart, ...] = ()
     missing = parts
+    unknown = f"; tool not drawn: held by {call_words(learned.binding)}" if hold is None else ""
     if hold is not None:
         held = spec.held.held(hold)
         parts, missing = held.parts, learned.held.held(hold).parts_missing_in(held)
     return FilmedTrial(
-        title=_title(info),
+        title=title,
+        caption=caption + unknown,
         ending=None if info.outcome is None else info.outcome.value,
         parts=parts,
         missing=missing,
@@ -57,12 +60,3 @@ def _require_steps(trial_id: int, wanted: tuple[int, int], count: int) -> None:
         known = f"it has steps 1 to {count}" if count else "it has none"
         missing = max(wanted[0], count + 1)
         raise UsageError(f"no step {missing} in trial {trial_id}; {known}")
-
-
-def _title(info: TrialInfo) -> str:
-    """Return which trial it is."""
-    spec = info.spec
-    tool = spec.tool if spec.tool == spec.shape else f"{spec.tool}, broken: {spec.shape}"
-    if known_hold(info.learned.binding) is None:
-        tool += f" (not drawn: held by {call_words(info.learned.binding)})"
-    return f"Trial {info.id}: {tool}, goal {spec.goal}, start {spec.start}"

@@ -1,11 +1,13 @@
 """How learning went over robot time, read for figures."""
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Sequence
+from dataclasses import replace
 
 from affcli.analysis.curves import INTERVALS, Curve, ToolCurves
 from affcli.core.records import LearningRunInfo, SessionInfo
 from affcli.errors import UsageError
+from affcli.report.words import run_words
 from affcli.store import Store
 
 
@@ -52,6 +54,22 @@ def curves_of_robots(
     for run in runs:
         curves[run.spec.tool].append(Curve.of(run, did.get(run.id, ()), seconds))
     return sessions[session_id], [ToolCurves.of(tool, some) for tool, some in curves.items()]
+
+
+def by_kind(curves: Sequence[Curve]) -> list[ToolCurves]:
+    """Return the mean and spread of runs that differ in nothing but seed and robot, by kind.
+
+    A kind is called by its tool, and where others have the same tool by what is not default too.
+    """
+    kinds: dict[str, list[Curve]] = defaultdict(list)
+    for curve in curves:
+        kinds[replace(curve.run.spec, seed=0, robot=0).key].append(curve)
+    specs = [some[0].run.spec for some in kinds.values()]
+    tools = Counter(spec.tool for spec in specs)
+    names = [
+        spec.tool if tools[spec.tool] == 1 else f"{spec.tool}, {run_words(spec)}" for spec in specs
+    ]
+    return [ToolCurves.of(name, some) for name, some in zip(names, kinds.values(), strict=True)]
 
 
 def _seconds(runs: Sequence[LearningRunInfo]) -> float:

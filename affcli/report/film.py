@@ -25,7 +25,7 @@ class FilmedTrial:
     """A trial, as a film strip shows it.
 
     Args:
-        title: which trial, in words.
+        title, caption: which trial, in words, and whose.
         ending: how it ended, in a word or three; None when it has not.
         parts: of the shape that was held (hand frame); none when it is not known how it was held.
         missing: parts that the robot believed to hold as well (hand frame).
@@ -37,6 +37,7 @@ class FilmedTrial:
     """
 
     title: str
+    caption: str
     ending: str | None
     parts: tuple[ToolPart, ...]
     missing: tuple[ToolPart, ...]

@@ -9,9 +9,9 @@ from affcli.core.affordance import PROBABILITY_THRESHOLD, Affordance
 from affcli.core.behavior import BehaviorCall
 from affcli.core.records import LearningRunInfo, StoredRow, StoredStep, TrialInfo
 from affcli.core.tool import Tool, ToolPart, known_hold
-from affcli.errors import one_line
-from affcli.report.figures.words import tool_words
-from affcli.report.words import call_words, clock, many, unknown_shapes
+from affcli.report.captions import Words, joined, run_caption, trial_seed
+from affcli.report.figures.words import broken_words, tool_words
+from affcli.report.words import call_words, many, unknown_shapes
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,13 +59,13 @@ class ShownTables:
     """One affordance table, or two side by side.
 
     Args:
-        title: what is shown, in words.
+        words: what is said of them.
         calls: the exploratory behaviors, each with its parameters.
         views: the tables.
         key: what each status of a row means here.
     """
 
-    title: str
+    words: Words
     calls: Sequence[BehaviorCall]
     views: Sequence[TableView]
     key: Mapping[RowStatus, str]
@@ -79,9 +79,9 @@ def run_shown(run: LearningRunInfo, rows: Sequence[Affordance], puck_radius: flo
     view = _view("", run, run.spec.held, None, puck_radius, rows, current(rows))
     left_out = view.count(RowStatus.EXCLUDED)
     counted = many(len(rows), "row") + (f", {left_out} of them excluded" if left_out else "")
-    title = f"run {run.id}, {run.spec.tool}{_unfinished(run)}, {counted}"
+    title = f"What the {tool_words(run.spec.tool)} affords"
     key = {RowStatus.LIVE: "live row of the affordance table", RowStatus.EXCLUDED: EXCLUDED}
-    return _shown(title, (run,), [view], key, run.spec.held)
+    return _shown(title, counted, (run,), [view], key, run.spec.held)
 
 
 def runs_compared(
@@ -95,8 +95,8 @@ def runs_compared(
     statuses = compared(*rows)
     before = _view(_heading(one), one, held[0], None, radii[0], rows[0], statuses[0])
     after = _view(_heading(other), other, held[1], held[0], radii[1], rows[1], statuses[1])
-    title = (
-        f"runs {one.id} ({one.spec.tool}) and {other.id} ({other.spec.tool}): "
+    title = f"What runs {one.id} and {other.id} have in common"
+    counted = (
         f"{before.count(RowStatus.KEPT)} of {many(len(rows[0]), 'row')} kept, "
         f"{before.count(RowStatus.LOST)} lost, {after.count(RowStatus.WON)} of "
         f"{many(len(rows[1]), 'row')} won"
@@ -107,7 +107,7 @@ def runs_compared(
         RowStatus.WON: f"won: only in run {other.id}",
         RowStatus.EXCLUDED: "excluded",
     }
-    return _shown(title, (one, other), (before, after), key, *held)
+    return _shown(title, counted, (one, other), (before, after), key, *held)
 
 
 def trial_shown(
@@ -140,44 +140,43 @@ def trial_shown(
     shape = f": the shape of the {tool_words(left.name)}" if broke else ""
     before = _view(f"Before trial {trial.id}", run, tool, None, puck_radius, rows, statuses[0])
     after = _view(f"After trial {trial.id}{shape}", run, left, tool, puck_radius, rows, statuses[1])
-    became = f" that became {left.name}" if broke else ""
-    so_far = "" if trial.outcome else f" (unfinished, {many(len(steps), 'step')} so far)"
-    title = (
-        f"trial {trial.id}, {tool.name}{became}{so_far}: "
-        f"{after.count(RowStatus.KEPT)} rows kept, {after.count(RowStatus.LOST)} lost"
-    )
+    so_far = "" if trial.outcome else f"unfinished, {many(len(steps), 'step')} so far"
+    title = f"Trial {trial.id}: what the {broken_words(tool.name, trial.spec.shape)} unlearned"
+    rows_left = f"{after.count(RowStatus.KEPT)} rows kept, {after.count(RowStatus.LOST)} lost"
+    counted = joined(rows_left, so_far, f"trial: {trial_seed(trial.spec)}")
     limit = "1/2" if threshold == PROBABILITY_THRESHOLD else f"{threshold:g}"
     key = {
         RowStatus.KEPT: "kept",
         RowStatus.LOST: f"lost: its probability fell to {limit} or below in the trial",
         RowStatus.EXCLUDED: "excluded before the trial",
     }
-    return _shown(title, (run,), (before, after), key, tool, left)
+    return _shown(title, counted, (run,), (before, after), key, tool, left)
 
 
-def row_shown(stored: StoredRow, run: LearningRunInfo, puck_radius: float) -> tuple[str, RowView]:
-    """Return a row of an affordance table with a title."""
+def row_shown(stored: StoredRow, run: LearningRunInfo, puck_radius: float) -> tuple[Words, RowView]:
+    """Return a row of an affordance table with what is said of it."""
     row, tool = stored.row, run.spec.held
-    what = f"row {stored.id}, {tool.name}, {call_words(row.exploratory)} (run {run.id})"
     left_out = unknown_shapes([tool]), _unknown_holds([row.binding])
-    title = "; ".join(filter(None, (what, *left_out)))
+    title = f"Row {stored.id} of the {tool_words(tool.name)}'s affordance table"
+    words = Words(title, joined(run_caption(run), *left_out))
     hold = known_hold(row.binding)
     held = replace(tool, parts=()) if hold is None else tool.held(hold) if tool.parts else tool
-    return one_line(title, 500), RowView(row, held, puck_radius)
+    return words, RowView(row, held, puck_radius)
 
 
 def _shown(
     title: str,
+    counted: str,
     runs: Sequence[LearningRunInfo],
     views: Sequence[TableView],
     key: Mapping[RowStatus, str],
     *tools: Tool,
 ) -> ShownTables:
-    """Return tables under a title that names what is not drawn; the first run's behaviors."""
+    """Return tables with a caption that names what is not drawn; the first run's behaviors."""
     calls = [one.call for one in runs[0].spec.repertoire]
     left_out = unknown_shapes(tools), _unknown_holds(run.spec.binding for run in runs)
-    title = "; ".join(filter(None, (title, *left_out)))
-    return ShownTables(one_line(title, 500), calls, views, key)
+    words = Words(title, joined(counted, run_caption(*runs), *left_out))
+    return ShownTables(words, calls, views, key)
 
 
 def _unknown_holds(bindings: Iterable[BehaviorCall]) -> str:
@@ -208,9 +207,4 @@ def _view(
 
 def _heading(run: LearningRunInfo) -> str:
     """Return what stands over the table of one of several runs."""
-    return f"Run {run.id}: {tool_words(run.spec.tool)}{_unfinished(run)}"
-
-
-def _unfinished(run: LearningRunInfo) -> str:
-    """Return in words how far a run came that is not finished; empty if it is."""
-    return "" if run.status == "done" else f" (unfinished, {clock(run.robot_seconds)} so far)"
+    return f"Run {run.id}: {tool_words(run.spec.tool)}"

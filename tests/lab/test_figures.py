@@ -5,6 +5,7 @@ from dataclasses import replace
 from statistics import fmean
 
 import pytest
+from affcli.report.figure_titles import results_title
 
 from affcli.analysis.paper import other_parts
 from affcli.config import Settings, settings_with
@@ -19,7 +20,6 @@ from affcli.lab.film_strips import film_of
 from affcli.lab.overview import overview_of, reproduction_of
 from affcli.lab.results import results_in
 from affcli.lab.sessions import finished_session
-from affcli.report.figure_titles import results_title
 from affcli.report.overview import overview_tables
 from affcli.store import Store
 from tests.lab.quick import (

@@ -1,10 +1,10 @@
 """Curves of learning runs end where the store says that the runs came to."""
 
 import pytest
+from affcli.report.figure_titles import curves_title, robots_title
 
 from affcli.errors import UsageError
 from affcli.lab.learning_curves import curves_of, curves_of_robots
-from affcli.report.figure_titles import curves_title, robots_title
 from affcli.simulation.tools.paper import TOOL_PARTS
 from affcli.store import Store
 from tests.lab.quick import LEISURELY, counted, now, reproducing, spec_of, stored, taken

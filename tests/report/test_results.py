@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from affcli.report.figure_titles import results_title
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
@@ -20,7 +21,6 @@ from affcli.analysis.statistics import Spread
 from affcli.core.records import TrialInfo
 from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome
-from affcli.report.figure_titles import results_title
 from affcli.report.figures.canvas import INK, SKY, TWO_COLUMNS, VERMILION, encoded
 from affcli.report.figures.results import results_figure
 from tests.report.hand_made import FOUR_ROBOTS, MANY_ROBOTS, RUNS, session_of, trial_info

@@ -11,9 +11,9 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator, PercentFormatter
 
 from affcli.analysis.adaptation import AdaptationCourse, MeanProbability, Share
-from affcli.report.figure_titles import course_note, course_title
-from affcli.report.figures.canvas import BLUE, FAINT, ONE_COLUMN, VERMILION, canvas, head
+from affcli.report.figures.canvas import BLUE, FAINT, ONE_COLUMN, VERMILION, canvas
 from affcli.report.figures.key import draw_key
+from affcli.report.figures.words import tool_words
 
 HEIGHT = 3.9
 """Of the figure (in)."""
@@ -23,9 +23,14 @@ BROKEN: dict[str, Any] = {"color": VERMILION}
 WHOLE: dict[str, Any] = {"color": BLUE, "linestyle": (0, (4, 2))}
 
 
-def adaptation_figure(course: AdaptationCourse) -> Figure:
-    """Draw the course of the adaptation: trials still running, vain tries, probabilities."""
-    with canvas(ONE_COLUMN, HEIGHT) as figure:
+def adaptation_figure(course: AdaptationCourse, width: float | None = None) -> Figure:
+    """Draw the course of the adaptation: trials still running, vain tries, probabilities.
+
+    Args:
+        course: of which session.
+        width: in; that of a column if not given.
+    """
+    with canvas(width or ONE_COLUMN, HEIGHT) as figure:
         running, tries, probability = figure.subplots(
             3, 1, sharex=True, height_ratios=(0.45, 1.0, 1.0)
         )
@@ -36,7 +41,6 @@ def adaptation_figure(course: AdaptationCourse) -> Figure:
         probability.set_xlim(-0.5, course.shares[-1].number + 0.5)
         probability.xaxis.set_major_locator(MaxNLocator(7, integer=True, steps=[1, 2, 5, 10]))
         draw_key(figure, _key(course))
-        head(figure, course_title(course), course_note(course))
     return figure
 
 
@@ -84,7 +88,7 @@ def _key(course: AdaptationCourse) -> list[tuple[Artist, str]]:
     """Return what stands for what, of all that is drawn."""
     entries: list[tuple[Artist, str]] = [(Line2D([], [], **BROKEN), "broken tool")]
     if course.whole:
-        entries.append((Line2D([], [], **WHOLE), f"whole {course.tool}"))
+        entries.append((Line2D([], [], **WHOLE), f"whole {tool_words(course.tool)}"))
     if any(share.interval for share in course.shares):
         band = Patch(color=VERMILION, alpha=BAND, linewidth=0.0)
         entries.append((band, "95 % interval"))

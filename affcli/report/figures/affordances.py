@@ -8,12 +8,13 @@ from typing import NamedTuple
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
+from affcli.analysis.paper import in_papers_order
 from affcli.analysis.row_status import RowStatus
 from affcli.core.affordance import Affordance
 from affcli.core.behavior import BehaviorCall
 from affcli.core.geometry import Point, Pose
 from affcli.report.figures.arrows import LOOKS, Arrow, draw_arrows
-from affcli.report.figures.canvas import FAINT, ONE_COLUMN, TWO_COLUMNS, canvas
+from affcli.report.figures.canvas import FAINT, ONE_COLUMN, SMALL, TWO_COLUMNS, canvas, wrapped
 from affcli.report.figures.key import draw_key
 from affcli.report.figures.maps import columns_for, fit_maps, map_panels
 from affcli.report.figures.things import draw_grasp, draw_parts, draw_puck
@@ -24,10 +25,14 @@ MARGIN = 0.8
 """Room around all that is drawn (in of the table)."""
 ASPECTS = 0.4, 2.5
 """The height of a panel over its width lies between these."""
+TITLES = 7.0
+"""Size of the letters over a panel (points)."""
 HEAD = 0.8
 """Length of the heads of arrows (in of the table)."""
+ENOUGH = 1.4
+"""Width that a panel should have (in); where there is less room two stand side by side."""
 MOST_BESIDE = 5
-"""Panels in a row of a page."""
+"""Where so many behaviors fit beside one another they all stand so."""
 
 
 class _Panel(NamedTuple):
@@ -38,7 +43,10 @@ class _Panel(NamedTuple):
 
 
 def affordances_figure(
-    calls: Sequence[BehaviorCall], views: Sequence[TableView], key: Mapping[RowStatus, str]
+    calls: Sequence[BehaviorCall],
+    views: Sequence[TableView],
+    key: Mapping[RowStatus, str],
+    width: float | None = None,
 ) -> Figure:
     """Return the panels of one affordance table, or of several side by side.
 
@@ -50,17 +58,21 @@ def affordances_figure(
         calls: the exploratory behaviors with their parameters; rows of others get panels too.
         views: the tables.
         key: what each status is called below the panels, where more than one occurs.
+        width: in; what suits it if not given.
     """
     groups = _groups(calls, [_panel_of(row) for view in views for row, _ in view.rows])
-    shown, columns = _arranged(groups, MOST_BESIDE // len(views) or 1)
+    most = max(2, int((width or TWO_COLUMNS) / ENOUGH) // len(views))
+    shown, columns = _arranged(groups, most)
+    width = width or (TWO_COLUMNS if columns * len(views) > 2 else ONE_COLUMN)
     kinds = [status for status in key if any(view.count(status) for view in views)]
-    with canvas(TWO_COLUMNS if columns * len(views) > 2 else ONE_COLUMN) as figure:
+    with canvas(width) as figure:
+        room = (width - 0.6) / (columns * len(views)) - 0.05
         beside = figure.add_gridspec(1, len(views))
         pages = [figure.add_subfigure(beside[0, number]) for number in range(len(views))]
         panels = [
             axes
             for page, view in zip(pages, views, strict=True)
-            for axes in _draw_table(page, view, shown, columns)
+            for axes in _draw_table(page, view, shown, columns, room)
         ]
         if len(kinds) > 1:
             draw_key(figure, [(LOOKS[status], key[status]) for status in kinds])
@@ -77,7 +89,7 @@ def _panel_of(row: Affordance) -> _Panel:
 
 
 def _groups(calls: Sequence[BehaviorCall], of_rows: Sequence[_Panel]) -> list[list[_Panel]]:
-    """Return the panels without repeats, one list for each behavior.
+    """Return the panels without repeats, one list for each behavior, in the order of Fig. 6.
 
     A call without rows has a panel too, with the tool as it is grasped.
     """
@@ -87,7 +99,7 @@ def _groups(calls: Sequence[BehaviorCall], of_rows: Sequence[_Panel]) -> list[li
     groups: dict[str, list[_Panel]] = {}
     for call, its in turns.items():
         groups.setdefault(call.name, []).extend(_Panel(call, turn) for turn in sorted(its or {0}))
-    return list(groups.values())
+    return in_papers_order(groups.values(), lambda panels: panels[0].call.name)
 
 
 def _arranged(groups: Sequence[Sequence[_Panel]], most: int) -> tuple[list[_Panel], int]:
@@ -103,29 +115,29 @@ def _arranged(groups: Sequence[Sequence[_Panel]], most: int) -> tuple[list[_Pane
 
 
 def _draw_table(
-    page: FigureBase, view: TableView, shown: Sequence[_Panel], columns: int
+    page: FigureBase, view: TableView, shown: Sequence[_Panel], columns: int, room: float
 ) -> list[Axes]:
     """Draw one table in so many columns of panels; return the panels."""
     labels = "x from the wrist (in)", "y from the wrist (in)"
     panels = map_panels(page, len(shown), columns, labels)
     for axes, panel in zip(panels, shown, strict=True):
-        _draw_panel(axes, view, panel)
+        _draw_panel(axes, view, panel, room)
     if view.heading:
-        page.suptitle(view.heading, fontsize=9.0)
+        page.suptitle(wrapped(view.heading, 8.0, columns * room), fontsize=8.0)
     # The attractor beside the grasp point, to scale: an arrow begins at its middle.
     corners = [c for part in (*view.parts, *view.missing) for c in part.outline.vertices]
     radius = view.puck_radius
     left, bottom = (min((c[i] for c in corners), default=0.0) for i in (0, 1))
     place = Point(left - 2 * radius, bottom + radius)
     draw_puck(panels[0], place, radius, before=True, color=FAINT)
-    panels[0].text(place.x, place.y + 1.2 * radius, "puck", ha="center", va="bottom", fontsize=6.0)
+    panels[0].text(
+        place.x, place.y + 1.2 * radius, "puck", ha="center", va="bottom", fontsize=SMALL
+    )
     return panels
 
 
-def _draw_panel(axes: Axes, view: TableView, panel: _Panel) -> None:
+def _draw_panel(axes: Axes, view: TableView, panel: _Panel, room: float) -> None:
     """Draw the rows of one panel over the tool, which turns with the wrist."""
-    turned = f"\nwrist at {panel.turn} deg" if panel.turn else ""
-    axes.set_title(call_words(panel.call) + turned)
     wrist = Pose(0.0, 0.0, math.radians(panel.turn))
     draw_parts(axes, view.parts, wrist)
     draw_parts(axes, view.missing, wrist, missing=True)
@@ -134,8 +146,10 @@ def _draw_panel(axes: Axes, view: TableView, panel: _Panel) -> None:
     for status in RowStatus:
         arrows = [_arrow(row) for row, its in its_rows if its is status]
         draw_arrows(axes, arrows, LOOKS[status], HEAD)
-    words = _counts([status for _, status in its_rows])
-    axes.text(0.97, 0.03, words, transform=axes.transAxes, ha="right", va="bottom", fontsize=6.5)
+    turned = [f"wrist at {panel.turn} deg"] if panel.turn else []
+    counts = _counts([status for _, status in its_rows])
+    lines = "\n".join([call_words(panel.call), *turned, counts])
+    axes.set_title(wrapped(lines, TITLES, room), fontsize=TITLES)
 
 
 def _arrow(row: Affordance) -> Arrow:
@@ -145,9 +159,9 @@ def _arrow(row: Affordance) -> Arrow:
 
 
 def _counts(statuses: Sequence[RowStatus]) -> str:
-    """Return how many rows a panel has, one line for each status where there are several."""
+    """Return how many rows a panel has, of each status where there are several."""
     counts = {status: statuses.count(status) for status in RowStatus if status in statuses}
     if set(counts) <= {RowStatus.LIVE}:
         rows = len(statuses)
         return f"{rows or 'no'} row{'' if rows == 1 else 's'}"
-    return "\n".join(f"{count} {status.value}" for status, count in counts.items())
+    return ", ".join(f"{count} {status.value}" for status, count in counts.items())

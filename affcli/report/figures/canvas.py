@@ -1,6 +1,7 @@
 """What all figures share: fonts, colours, sizes, and how one becomes a file's bytes."""
 
 import io
+import math
 import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,12 +10,17 @@ from typing import Any
 import matplotlib as mpl
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties, findfont, get_font
+from matplotlib.textpath import text_to_path
+from matplotlib.transforms import Bbox
 from matplotlib.typing import RcKeyType
 
-from affcli.errors import BadInputError
+from affcli.errors import BadInputError, one_line
 
-ONE_COLUMN, TWO_COLUMNS = 3.4, 7.1
+ONE_COLUMN, TWO_COLUMNS = 3.5, 7.1
 """Widths of figures in a two-column journal (in)."""
+DPI = 300
+"""Pixels an inch of a PNG."""
 
 BLUE, ORANGE, GREEN, VERMILION, PURPLE, SKY = (
     *("#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9"),
@@ -24,13 +30,21 @@ INK, FAINT, PALE = "#222222", "#8c8c8c", "#e8e8e8"
 WOOD = "#d9d2c5"
 """A tool under arrows: light enough that all of them stand out on it, also in grey."""
 
-HEAD_SIZE = 7.0
-"""Of the letters over a figure (points)."""
-LETTER = 0.58
-"""How wide a letter is on average, over its size."""
+TITLE_SIZE, CAPTION_SIZE = 8.0, 6.5
+"""Of the letters over and under a figure (points)."""
+SMALL = 6.0
+"""The smallest letters of any figure (points)."""
+LINE = 1.25
+"""From one line to the next, over the size of the letters."""
+LONGEST_WORDS = 1_000
+"""Letters of the longest caption that is shown."""
+STRIP = 0.05
+"""Around the lines over and under a figure (in)."""
+FONT = "DejaVu Sans"
+"""It comes with matplotlib: the same everywhere."""
 
 STYLE: dict[RcKeyType, Any] = {
-    "font.family": "DejaVu Sans",  # comes with matplotlib: the same everywhere
+    "font.family": FONT,
     "font.size": 7.0,
     "axes.titlesize": 7.5,
     "axes.labelsize": 7.0,
@@ -56,7 +70,6 @@ STYLE: dict[RcKeyType, Any] = {
     "figure.constrained_layout.use": True,
     "figure.constrained_layout.w_pad": 0.03,
     "figure.constrained_layout.h_pad": 0.03,
-    "savefig.dpi": 300,
     "figure.dpi": 100,
     "pdf.fonttype": 42,  # whole fonts in the file, as journals ask
     "svg.fonttype": "path",  # letters as shapes: nothing to be missing elsewhere
@@ -98,12 +111,20 @@ def canvas(width: float, height: float = 4.0) -> Iterator[Figure]:
         yield figure
 
 
-def encoded(figure: Figure, ending: str) -> bytes:
+def encoded(
+    figure: Figure, ending: str, *, title: str = "", caption: str = "", dpi: int = DPI
+) -> bytes:
     """Return a figure as the bytes of a file; the same figure gives the same bytes.
+
+    Title and caption stand outside of what was laid out: they make the picture higher, and nothing
+    in it smaller.
 
     Args:
         figure: what to write.
         ending: of the file's name: a key of `FORMATS`.
+        title: stands over it; may be empty.
+        caption: stands under it; may be empty.
+        dpi: pixels an inch, where there are pixels.
 
     Raises:
         BadInputError: another ending.
@@ -113,13 +134,45 @@ def encoded(figure: Figure, ending: str) -> bytes:
         raise BadInputError(f"{ending or 'no ending'}: figures are {', '.join(FORMATS)}")
     page = io.BytesIO()
     with style():
-        figure.savefig(page, format=kind, metadata=METADATA[kind])
+        width, height = map(float, figure.get_size_inches())
+        over, under = _strip(title, TITLE_SIZE, width), _strip(caption, CAPTION_SIZE, width)
+        place = {"x": STRIP / width, "in_layout": False, "linespacing": LINE}
+        figure.text(y=1.0 + STRIP / height, s=over[0], va="bottom", fontsize=TITLE_SIZE, **place)
+        figure.text(y=-STRIP / height, s=under[0], va="top", fontsize=CAPTION_SIZE, **place)
+        # Whole pixels: Agg leaves out parts of one, and 3.3 * 200 may be a little less than 660.
+        high = math.ceil((over[1] + height + under[1]) * dpi) / dpi
+        low = -under[1]
+        box = Bbox([[0.0, low], [(round(width * dpi) + 0.01) / dpi, low + high + 0.01 / dpi]])
+        figure.savefig(page, format=kind, dpi=dpi, bbox_inches=box, metadata=METADATA[kind])
     return page.getvalue()
 
 
-def head(figure: Figure, *lines: str) -> None:
-    """Write lines over a figure, from its left edge; what is too long for one goes on below."""
-    width = figure.get_figwidth()
-    letters = int(72.0 * width / (LETTER * HEAD_SIZE))
-    words = "\n".join(textwrap.fill(line, letters) for line in lines if line)
-    figure.suptitle(words, x=0.03 / width, ha="left", fontsize=HEAD_SIZE)
+def _strip(words: str, size: float, width: float) -> tuple[str, float]:
+    """Return words broken into lines for a strip as wide as a figure, and its height (in)."""
+    lines = wrapped(drawable(words), size, width - 2 * STRIP)
+    return lines, (lines.count("\n") + 1) * LINE * size / 72.0 + 2 * STRIP if words else 0.0
+
+
+def drawable(words: str) -> str:
+    """Return words as a figure can show them: of letters that its font has, in one line."""
+    known = get_font(findfont(FONT)).get_charmap()
+    letters = one_line(words, LONGEST_WORDS)
+    return "".join(
+        c if ord(c) in known else c.encode("ascii", "backslashreplace").decode() for c in letters
+    )
+
+
+def width_of(words: str, size: float) -> float:
+    """Return how wide a line of letters of a size is (in)."""
+    font = FontProperties(family=FONT, size=size)
+    return text_to_path.get_text_width_height_descent(words, font, ismath=False)[0] / 72.0
+
+
+def wrapped(words: str, size: float, width: float) -> str:
+    """Return words broken into lines that are at most so wide (in), between words if they can."""
+    lines = words.split("\n")
+    for letters in range(max(map(len, lines)), 0, -1):
+        broken = [part for line in lines for part in textwrap.wrap(line, letters) or [""]]
+        if max(width_of(line, size) for line in broken) <= width:
+            return "\n".join(broken)
+    return words

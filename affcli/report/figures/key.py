@@ -10,7 +10,7 @@ from matplotlib.legend_handler import HandlerPatch, HandlerTuple
 from matplotlib.patches import Circle, Patch
 
 from affcli.report.figures.arrows import ArrowKey, Look
-from affcli.report.figures.canvas import LETTER
+from affcli.report.figures.canvas import width_of
 
 HANDLE = 2.6
 """Length of what stands before a label, over the size of the letters."""
@@ -31,8 +31,8 @@ def draw_key(
         place: where; the figure makes room for it.
         size: of the letters (points).
     """
-    longest = max(len(words) for _, words in entries)
-    column = (LETTER * longest + HANDLE + 2.5) * size / 72.0
+    longest = max(width_of(words, size) for _, words in entries)
+    column = longest + (HANDLE + 2.5) * size / 72.0
     return figure.legend(
         [handle for handle, _ in entries],
         [words for _, words in entries],

@@ -2,10 +2,12 @@
 
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullLocator
+from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator, NullLocator
 
 from affcli.analysis.prediction import Push, Score, scores
 from affcli.analysis.statistics import wilson
@@ -13,6 +15,7 @@ from affcli.report.figures.canvas import (
     BLUE,
     FAINT,
     GREEN,
+    INK,
     TWO_COLUMNS,
     VERMILION,
     canvas,
@@ -22,33 +25,47 @@ from affcli.report.prediction import PREDICTORS
 
 CROWDED = 1.25
 """Two stages that differ by less than this factor share one number on the axis."""
-HEIGHT = 2.5
-"""Of the figure (in)."""
+NARROWEST = 1.8
+"""Width of a panel (in)."""
+THICK, THIN = 1.2, 0.5
+"""Lines of medians, and of what 95 % stay below (points)."""
 LOOKS = {"by_row": (BLUE, "o", "-"), "by_mean": (GREEN, "s", "--"), "as_wrist": (FAINT, "^", ":")}
 """Colour, mark and line of each predictor: told apart without colour too."""
 
 
-def prediction_figure(title: str, pushes: Sequence[Push]) -> Figure:
+def prediction_figure(pushes: Sequence[Push], width: float | None = None) -> Figure:
     """Draw shares and errors against the number of rows the table was learned from.
 
     Args:
-        title: whose table.
         pushes: what was predicted, and what was seen.
+        width: in; that of two columns if not given. In one the panels stand over one another.
     """
-    growing = scores(pushes)
-    with canvas(TWO_COLUMNS, HEIGHT) as figure:
-        left, middle, right = figure.subplots(1, 3)
-        _draw_shares(left, growing)
-        _draw_errors(middle, growing, "inches", "error of displacement (in)")
-        _draw_errors(right, growing, "degrees", "error of direction (degrees)")
-        for axes in (left, middle, right):
+    growing, width = scores(pushes), width or TWO_COLUMNS
+    rows, columns = (1, 3) if width >= 3 * NARROWEST else (3, 1)
+    with canvas(width, 0.7 + 1.7 * rows) as figure:
+        panels = figure.subplots(rows, columns, squeeze=False).flat
+        shares, inches, degrees = panels
+        _draw_shares(shares, growing)
+        shares.set_title("is there a movement?")
+        _draw_errors(inches, growing, "inches", "error of the hits (in)")
+        inches.set_title("where to?")
+        _draw_errors(degrees, growing, "degrees", "error of the hits (deg)")
+        degrees.set_title("in which direction?")
+        for axes in (shares, inches, degrees):
             _rows_axis(axes, growing)
-        moved = sum(push.moved for push in pushes)
-        left.set_title(f"{title}: {len(pushes)} pushes, {moved} moved", loc="left")
-        middle.set_title("of the hits; thick: median; thin: 95 % lie below", loc="left")
-        lines, words = middle.get_legend_handles_labels()
-        draw_key(figure, list(zip(lines, words, strict=True)))
+        draw_key(figure, _key(shares, inches))
     return figure
+
+
+def _key(shares: Axes, errors: Axes) -> list[tuple[Any, str]]:
+    """Return what stands for what: the shares, the predictors, and the two lines of each."""
+    entries = [
+        pair
+        for axes in (shares, errors)
+        for pair in zip(*axes.get_legend_handles_labels(), strict=True)
+    ]
+    thick, thin = (Line2D([], [], color=INK, linewidth=width) for width in (THICK, THIN))
+    return [*entries, (thick, "median error"), (thin, "error that 95 % stay below")]
 
 
 def _draw_shares(axes: Axes, growing: Sequence[Score]) -> None:
@@ -74,15 +91,14 @@ def _draw_shares(axes: Axes, growing: Sequence[Score]) -> None:
             label=label,
         )
     axes.set_ylim(-0.02, 1.02)
-    axes.set_ylabel("share of pushes (95 % interval)")
-    axes.legend(loc="upper left")
+    axes.set_ylabel("share (95 % interval)")
 
 
 def _draw_errors(axes: Axes, growing: Sequence[Score], kind: str, label: str) -> None:
     """Draw the median error of each predictor, and as thin lines what 95 % stay below."""
     for field, words in PREDICTORS.items():
         color, mark, line = LOOKS[field]
-        for suffix, width, size, name in (("", 1.0, 3.0, words), ("_95", 0.5, 1.5, "_")):
+        for suffix, width, size, name in (("", THICK, 3.0, words), ("_95", THIN, 1.5, "_")):
             known = [
                 (score.rows, value)
                 for score in growing
@@ -98,7 +114,15 @@ def _draw_errors(axes: Axes, growing: Sequence[Score], kind: str, label: str) ->
                 linewidth=width,
                 label=name,
             )
-    axes.set_ylim(bottom=0.0)
+    # What is off by nothing lies on the axis.
+    axes.set_yscale("log", nonpositive="clip")
+    lowest = min(
+        (v for line in axes.lines for v in map(float, line.get_ydata()) if v > 0), default=1
+    )
+    axes.set_ylim(bottom=0.7 * lowest)
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=9))
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_minor_locator(NullLocator())
     axes.set_ylabel(label)
 
 

@@ -12,15 +12,27 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from affcli.analysis.comparison import Beside, Results
-from affcli.analysis.paper import STARTS
-from affcli.report.figure_titles import results_note, results_title
-from affcli.report.figures.canvas import INK, PALE, SKY, TWO_COLUMNS, VERMILION, canvas, head
+from affcli.analysis.paper import STARTS, in_papers_order
+from affcli.report.figures.canvas import (
+    FAINT,
+    INK,
+    ONE_COLUMN,
+    PALE,
+    SKY,
+    TWO_COLUMNS,
+    VERMILION,
+    canvas,
+    wrapped,
+)
 from affcli.report.figures.key import draw_key
 from affcli.report.figures.maps import columns_for
+from affcli.report.figures.words import tool_words
 from affcli.report.words import in_order
 
-MOST_BESIDE = 4
-"""Goals in a row of the page."""
+NARROWEST = 1.1
+"""Width of a panel (in)."""
+NAMES = 1.1
+"""Room for the names of tools (in); longer ones are broken into lines."""
 UNTRIED = Beside(None, [], 0)
 """A cell of which nothing is known."""
 DOT = 0.02
@@ -35,32 +47,54 @@ PAPER: dict[str, Any] = {
 }
 
 
-def results_figure(results: Results) -> Figure:
-    """Draw the results: a panel a goal with a row a tool; total and broken tool beside them."""
-    goals = in_order(goal for _, goal in results.cells)
-    tools = list(dict.fromkeys(tool for tool, _ in results.cells))
-    across = columns_for(len(goals), MOST_BESIDE)
-    rows = math.ceil(len(goals) / across)
-    with canvas(TWO_COLUMNS, 0.85 + rows * (0.5 + 0.2 * len(tools))) as figure:
-        grid = figure.add_gridspec(2 * rows, across + 1)
+def results_figure(results: Results, width: float | None = None) -> Figure:
+    """Draw the results: a panel a goal with a row a tool; then the total and the broken tool.
+
+    Goals and tools of which nothing was tried are left out; a cell of the others says so.
+
+    Args:
+        results: whose.
+        width: in; what suits it if not given.
+    """
+    tried = [cell for cell, beside in results.cells.items() if beside.counts]
+    goals = in_order(goal for _, goal in tried)
+    names = dict.fromkeys(tool for tool, _ in results.cells if tool in {t for t, _ in tried})
+    tools = in_papers_order(names, lambda name: name.split(",")[0])
+    sums = [
+        (name, beside)
+        for name, beside in (("all trials", results.total), ("broken tool", results.broken))
+        if beside is not None
+    ]
+    panels = len(goals) + bool(sums)
+    columns = columns_for(panels, int((width or TWO_COLUMNS) / NARROWEST))
+    width = width or (TWO_COLUMNS if columns > 2 else ONE_COLUMN)
+    lines = math.ceil(panels / columns)
+    labels = [wrapped(tool_words(tool), 6.5, NAMES) for tool in tools]
+    high = max(0.75, 0.15 * sum(1 + label.count("\n") for label in labels) + 0.1 * len(labels))
+    with canvas(width, 0.3 + lines * (0.5 + high * (1 + (len(sums) > 1 and high < 1)))) as figure:
+        grid = figure.add_gridspec(2 * lines, columns)
         for number, goal in enumerate(goals):
-            row, column = divmod(number, across)
-            axes = figure.add_subplot(grid[2 * row : 2 * row + 2, column])
+            line, column = divmod(number, columns)
+            axes = figure.add_subplot(grid[2 * line : 2 * line + 2, column])
             cells = {tool: results.cells.get((tool, goal), UNTRIED) for tool in tools}
-            most = _most_tried(cells.values())
-            _draw_rows(axes, cells, most)
-            axes.set_title(f"goal {goal}")
-            axes.set_xlabel(f"successes of {most}")
-            axes.xaxis.set_major_locator(MaxNLocator(5, integer=True))
-            axes.set_xlim(-0.35, most + 0.35)
+            _draw_goal(axes, goal, dict(zip(labels, cells.values(), strict=True)))
             axes.tick_params(labelleft=column == 0)
-        sums = (("all trials", results.total), ("broken tool", results.broken))
-        for row, (name, beside) in enumerate(sums):
-            _draw_sum(figure.add_subplot(grid[row, across]), name, beside)
+        line, column = divmod(len(goals), columns)
+        for half, (name, beside) in enumerate(sums):
+            place = slice(2 * line + half, 2 * line + (half + 1 if len(sums) > 1 else 2))
+            _draw_sum(figure.add_subplot(grid[place, column]), name, beside)
         draw_key(figure, _key(results))
-        words = (results_title(results), results_note(results))
-        head(figure, "; ".join(filter(None, words)))
     return figure
+
+
+def _draw_goal(axes: Axes, goal: str, cells: Mapping[str, Beside]) -> None:
+    """Draw one goal, a row for each tool by its name."""
+    most = _most_tried(cells.values())
+    _draw_rows(axes, cells, most)
+    axes.set_title(f"goal {goal}")
+    axes.set_xlabel(f"successes of {most}")
+    axes.xaxis.set_major_locator(MaxNLocator(5, integer=True))
+    axes.set_xlim(-0.35, most + 0.35)
 
 
 def _most_tried(cells: Iterable[Beside]) -> int:
@@ -71,17 +105,11 @@ def _most_tried(cells: Iterable[Beside]) -> int:
     return max(max(cell.tried, 0 if cell.paper is None else STARTS) for cell in cells)
 
 
-def _draw_sum(axes: Axes, name: str, beside: Beside | None) -> None:
-    """Draw one row over many trials, or say that they were not all done."""
+def _draw_sum(axes: Axes, name: str, beside: Beside) -> None:
+    """Draw one row over many trials."""
+    _draw_rows(axes, {"": beside}, beside.tried)
     axes.set_title(name)
     axes.spines["left"].set_visible(False)
-    if beside is None:
-        axes.set_xticks([])
-        axes.set_yticks([])
-        axes.spines["bottom"].set_visible(False)
-        axes.text(0.5, 0.5, "not all done", transform=axes.transAxes, ha="center", va="center")
-        return
-    _draw_rows(axes, {"": beside}, beside.tried)
     axes.set_xlabel(f"successes of {beside.tried}")
     axes.xaxis.set_major_locator(MaxNLocator(4, integer=True))
     axes.set_xlim(*_limits(beside))
@@ -95,6 +123,10 @@ def _draw_rows(axes: Axes, rows: Mapping[str, Beside], most: int) -> None:
     axes.grid(axis="x", color=PALE, linewidth=0.5)
     axes.set_axisbelow(True)
     for y, beside in enumerate(rows.values()):
+        if not beside.counts:
+            axes.text(
+                0.05, y, "not tried", color=FAINT, va="center", transform=axes.get_yaxis_transform()
+            )
         _draw_ours(axes, y, beside)
         if beside.counts and beside.tried != most:
             words, spread = f"of {beside.tried}", beside.spread

@@ -1,6 +1,7 @@
 """One row of an affordance table, as the paper's table shows one (Fig. 5)."""
 
 from collections.abc import Iterable
+from typing import NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -10,8 +11,8 @@ from affcli.core.affordance import Affordance
 from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Observation
 from affcli.report.figures.arrows import Look, draw_arrows
-from affcli.report.figures.canvas import FAINT, INK, TWO_COLUMNS, canvas
-from affcli.report.figures.maps import fit_maps, map_panels
+from affcli.report.figures.canvas import FAINT, INK, TWO_COLUMNS, canvas, wrapped
+from affcli.report.figures.maps import columns_for, fit_maps, map_panels
 from affcli.report.figures.things import (
     draw_grasp,
     draw_length,
@@ -24,47 +25,56 @@ from affcli.report.table_views import RowView
 from affcli.report.words import parameter_words
 
 HEADINGS = (
-    "Grasping behavior\nand its parameters",
-    "Exploratory behavior\nand its parameters",
+    "Grasping behavior and its parameters",
+    "Exploratory behavior and its parameters",
     r"$O_\mathrm{start}$",
     r"$O_\mathrm{end}$",
-    "Replication\nprobability",
+    "Replication probability",
 )
+NARROWEST = 1.1
+"""Width of a cell (in)."""
 MARGIN = 1.0
 """Room around what is drawn (in of the table)."""
 ASPECTS = 0.8, 2.0
 """The height of a cell over its width lies between these."""
 MOVED = Look(INK, width=1.1, level=7.0)
-PROBABILITY = r"$\dfrac{\mathrm{times\ successful}}{\mathrm{times\ used}}$"
 
 
-def row_figure(view: RowView) -> Figure:
+def row_figure(view: RowView, width: float | None = None) -> Figure:
     """Return one row: grasp, behavior, what was seen before and after, probability.
 
     Tool and attractor are drawn where the observations put them, from where the wrist was at the
     start; the wrist is at the attractor less its place from the wrist, and turned as it was when
     the exploratory behavior began. All drawings have one scale.
+
+    Args:
+        view: the row.
+        width: in; that of two columns if not given. In one the cells stand in two lines.
     """
-    row = view.row
-    with canvas(TWO_COLUMNS) as figure:
-        cells = map_panels(figure, len(HEADINGS), len(HEADINGS), labels=("", ""))
-        for axes, heading in zip(cells, HEADINGS, strict=True):
-            axes.set_title(heading, parse_math=True)
+    row, width = view.row, width or TWO_COLUMNS
+    with canvas(width) as figure:
+        columns = columns_for(len(HEADINGS), max(1, int(width / NARROWEST)))
+        write = _Pen(width / columns - 0.12)
+        cells = map_panels(figure, len(HEADINGS), columns, labels=("", ""))
+        for number, (axes, heading) in enumerate(zip(cells, HEADINGS, strict=True)):
+            write.over(axes, heading)
             axes.tick_params(length=0.0, labelleft=False, labelbottom=False)
-            axes.spines["left"].set(visible=axes is not cells[0], color=FAINT, linewidth=0.4)
+            axes.spines["left"].set(visible=number % columns > 0, color=FAINT, linewidth=0.4)
             axes.spines["bottom"].set_visible(False)
             axes.spines["top"].set(visible=True, linewidth=0.5)
         grasping, behavior, before, after, probability = cells
         _draw_tool(grasping, view, Pose(0.0, 0.0))
-        _write_below(grasping, call_words(row.binding), "the cross is the grasp point")
-        _write(behavior, behavior_words(row.exploratory), parameter_words(row.exploratory))
+        write.below(grasping, call_words(row.binding), "the cross is the grasp point")
+        write.into(behavior, behavior_words(row.exploratory), parameter_words(row.exploratory))
         if row.truncated:
-            _write_below(behavior, "cut short: it met the", "edge of the reach")
+            write.below(behavior, "cut short: it met the edge of the reach")
         _draw_tool(before, view, Pose(0.0, 0.0, row.wrist_angle))
         draw_puck(before, row.start.wrist_to_object, view.puck_radius)
-        _write_below(before, *_places(row.start))
+        write.below(before, *_places(row.start))
         _draw_end(after, view)
-        _write_probability(probability, row)
+        length = row.expected_movement.distance
+        write.below(after, *_places(row.end), f"detected movement {length:.1f} in")
+        write.into(probability, *_probability(row))
         draw_length(behavior, Point(0.0, 0.0), round_length(4.0 * view.puck_radius))
         fit_maps(figure, cells, room=MARGIN, aspects=ASPECTS)
         for y, thick in ((0.999, 0.9), (0.001, 0.9)):
@@ -95,30 +105,36 @@ def _draw_end(axes: Axes, view: RowView) -> None:
     _draw_tool(axes, view, Pose(moved.x - wrist.x, moved.y - wrist.y, row.wrist_angle))
     draw_puck(axes, ended, view.puck_radius)
     draw_arrows(axes, [(began, ended)], MOVED, head=1.2)
-    length = row.expected_movement.distance
-    _write_below(axes, *_places(row.end), f"detected movement {length:.1f} in")
 
 
-def _write_probability(axes: Axes, row: Affordance) -> None:
-    """Write the replication probability as the paper does, and as numbers."""
+def _probability(row: Affordance) -> Iterable[str]:
+    """Return the replication probability as the paper writes it, and as numbers."""
     counts = f"{row.times_successful} / {row.times_used}"
-    axes.text(
-        0.5, 0.6, PROBABILITY, transform=axes.transAxes, ha="center", fontsize=8.0, parse_math=True
-    )  # fmt: skip
-    _write(axes, "", "", "", f"= {counts} = {row.replication_probability:.2f}")
+    yield "times successful / times used"
+    yield f"= {counts} = {row.replication_probability:.2f}"
     if 2 * row.times_successful <= row.times_used:
-        _write_below(axes, "excluded: not", "greater than 1/2")
+        yield "excluded: not greater than 1/2"
 
 
-def _write(axes: Axes, *lines: str) -> None:
-    """Write lines into the middle of a cell."""
-    words = "\n".join(lines)
-    axes.text(0.5, 0.55, words, transform=axes.transAxes, ha="center", va="center", fontsize=8.0)
+class _Pen(NamedTuple):
+    """Writes into the cells, which are so wide (in)."""
 
+    room: float
 
-def _write_below(axes: Axes, *lines: str) -> None:
-    """Write lines below a cell's drawing."""
-    axes.set_xlabel("\n".join(lines), fontsize=6.5)
+    def over(self, axes: Axes, words: str) -> None:
+        """Write the heading of a cell; what is small in a formula is still large enough."""
+        formula = "$" in words
+        lines = words if formula else wrapped(words, 7.0, self.room)
+        axes.set_title(lines, parse_math=formula, fontsize=9.0 if formula else 7.0)
+
+    def into(self, axes: Axes, *lines: str) -> None:
+        """Write lines into the middle of a cell."""
+        words = wrapped("\n".join(lines), 8.0, self.room)
+        axes.text(0.5, 0.55, words, transform=axes.transAxes, ha="center", va="center", fontsize=8)
+
+    def below(self, axes: Axes, *lines: str) -> None:
+        """Write lines below a cell's drawing."""
+        axes.set_xlabel(wrapped("\n".join(lines), 6.5, self.room), fontsize=6.5)
 
 
 def _places(seen: Observation) -> Iterable[str]:

@@ -5,49 +5,56 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from affcli.analysis.paper import in_papers_order
 from affcli.core.geometry import Point
 from affcli.core.tool import PUCK_COLOR, Color, Tool, ToolPart
-from affcli.report.figures.canvas import INK, TWO_COLUMNS, canvas
-from affcli.report.figures.maps import fit_maps, map_panels
+from affcli.report.figures.canvas import INK, SMALL, TWO_COLUMNS, canvas, wrapped
+from affcli.report.figures.maps import columns_for, fit_maps, map_panels
 from affcli.report.figures.things import draw_length, draw_parts, draw_puck, round_length
 from affcli.report.figures.words import shown, tool_words
 
-MOST_BESIDE = 7
-"""Things in a row of the page."""
+NARROWEST = 0.85
+"""Width of a panel (in)."""
 MARGIN = 0.8
 """Around all that is drawn in a panel (in of the table)."""
 ASPECTS = 0.5, 2.5
 """The height of a panel over its width lies between these."""
-SMALL = 6.0
-"""Size of the letters beside the parts (points)."""
 
 
-def tools_figure(tools: Sequence[Tool], broken: tuple[Tool, Tool], puck_radius: float) -> Figure:
+def tools_figure(
+    tools: Sequence[Tool],
+    broken: tuple[Tool, Tool],
+    puck_radius: float,
+    width: float | None = None,
+) -> Figure:
     """Return the attractor and all tools side by side, and one that broke.
 
     All to scale. Each part is named on the first tool that has it.
 
     Args:
-        tools: in the order in which they stand.
+        tools: the paper's stand in its order, then the others.
         broken: a tool as it was, and the shape that is left of it, which keeps its colour (§7.2).
         puck_radius: of the attractor (in).
+        width: in; that of two columns if not given.
     """
+    width, tools = width or TWO_COLUMNS, in_papers_order(tools, lambda tool: tool.name)
     whole, left = broken
     lost = whole.parts_missing_in(left)
-    with canvas(TWO_COLUMNS) as figure:
+    with canvas(width) as figure:
         count = len(tools) + 2
-        attractor, *panels, last = map_panels(figure, count, min(count, MOST_BESIDE), ("", ""))
+        columns = columns_for(count, int(width / NARROWEST))
+        attractor, *panels, last = map_panels(figure, count, columns, ("", ""))
         _draw_attractor(attractor, puck_radius)
         named: set[str] = set()
         for axes, tool in zip(panels, tools, strict=True):
-            axes.set_xlabel(tool_words(tool.name))
+            axes.set_xlabel(wrapped(tool_words(tool.name), 7.0, width / columns - 0.1))
             draw_parts(axes, tool.parts, fill=_paint(tool.color), edge=INK)
             _mark_grasp_point(axes, "" if named else "grasp point")
             for part in (part for part in tool.parts if part.name not in named):
                 _name_part(axes, part, part.name)
                 named.add(part.name)
-        shape = tool_words(left.name)
-        last.set_xlabel(f"{tool_words(whole.name)} that broke:\nthe shape of\nthe {shape}")
+        broke = f"{tool_words(whole.name)} that broke: the shape of the {tool_words(left.name)}"
+        last.set_xlabel(wrapped(broke, 7.0, width / columns - 0.1))
         draw_parts(last, left.parts, fill=_paint(whole.color), edge=INK)
         draw_parts(last, lost, edge=INK, missing=True)
         _mark_grasp_point(last, "")

@@ -22,11 +22,12 @@ from affcli.report.figures.canvas import (
     ONE_COLUMN,
     ORANGE,
     PALE,
+    SMALL,
     TWO_COLUMNS,
     VERMILION,
     WOOD,
     canvas,
-    head,
+    wrapped,
 )
 from affcli.report.figures.key import draw_key
 from affcli.report.figures.maps import fit_maps, map_panels
@@ -43,11 +44,13 @@ HEADS = 1.8, 1.0
 SEEN_HEAD = 0.35
 """What is seen has a head of at most this share of the arrow: what lies below stays visible."""
 OFF_TABLE = "#f3f3f3"
-SMALL = 6.0
-"""Size of the letters (points): what fits over the narrowest panel."""
+NARROWEST = 1.05
+"""Width of a panel with what stands around it (in)."""
+BOLD = 1.12
+"""How much wider bold letters are."""
 
 
-def trial_figure(trial: FilmedTrial, shown: Shown) -> Figure:
+def trial_figure(trial: FilmedTrial, shown: Shown, width: float | None = None) -> Figure:
     """Draw a trial as a film strip.
 
     Things stand where they truly were. Both arrows begin there: what the row expected, and what the
@@ -56,9 +59,13 @@ def trial_figure(trial: FilmedTrial, shown: Shown) -> Figure:
     Args:
         trial: which.
         shown: what of it gets a panel.
+        width: in; what suits it if not given.
     """
     columns = min(COLUMNS, shown.panels)
-    with canvas(ONE_COLUMN if columns <= 2 else TWO_COLUMNS) as figure:
+    if width is None:
+        width = ONE_COLUMN if columns <= 2 else TWO_COLUMNS
+    columns = min(columns, int(width / NARROWEST))
+    with canvas(width) as figure:
         panels = map_panels(figure, shown.panels, columns)
         for axes in panels:
             _draw_table(axes, trial)
@@ -66,10 +73,9 @@ def trial_figure(trial: FilmedTrial, shown: Shown) -> Figure:
             _draw_start(panels[0], trial)
         for axes, take in zip(panels[shown.start :], shown.takes, strict=True):
             _draw_step(axes, trial, take[-1])
-            _write_over(axes, take)
+            _write_over(axes, take, (width - 0.4) / columns - 0.06)
         if trial.ending is not None and shown.last == len(trial.steps):
             _write_ending(panels[-1], trial.ending)
-        head(figure, trial.title, "; ".join(filter(None, (trial.course, shown.note))))
         draw_key(figure, _key(trial, shown), "outside lower left", SMALL)
         fit_maps(figure, panels, room=0.7, aspects=(0.62, 1.0))
     return figure
@@ -128,13 +134,16 @@ def _arrow(start: Point, movement: Movement) -> Arrow:
     return start, Point(start.x + movement.dx, start.y + movement.dy)
 
 
-def _write_over(axes: Axes, take: Sequence[StoredStep]) -> None:
+def _write_over(axes: Axes, take: Sequence[StoredStep], room: float) -> None:
     """Write over a panel which steps it shows and what came of them; mark a row that is lost."""
-    # The empty line leaves room for the other two titles, which stand side by side.
-    axes.set_title(f"{take_title(take)}\n", loc="left", fontsize=SMALL, fontweight="bold")
-    axes.set_title(take_verdict(take), x=0.0, ha="left", fontsize=SMALL)
-    if take[-1].lost:
-        axes.set_title("lost", loc="right", fontsize=SMALL, fontweight="bold", color=VERMILION)
+    lost = take[-1].lost
+    verdict = wrapped(take_verdict(take) + (", lost" if lost else ""), SMALL, room)
+    title = wrapped(take_title(take), BOLD * SMALL, room)
+    # The empty lines leave room for the other title.
+    below = "\n" * (verdict.count("\n") + 1)
+    axes.set_title(title + below, loc="left", fontsize=SMALL, fontweight="bold")
+    axes.set_title(verdict, x=0.0, ha="left", fontsize=SMALL)
+    if lost:
         axes.spines[:].set(color=VERMILION, linewidth=1.5)
 
 

@@ -1,4 +1,4 @@
-"""Words in figures: names on one line, behaviors with their parameters and units."""
+"""Words in figures: names on one line, as the paper spells them, with parameters and units."""
 
 from affcli.core.behavior import BehaviorCall
 from affcli.errors import one_line
@@ -15,13 +15,22 @@ def shown(name: str) -> str:
 
 
 def tool_words(name: str) -> str:
-    """Return a tool's name as the paper spells it: ``T-hook``."""
+    """Return a tool's name as the paper's table spells it (§7.1): ``T-hook``, ``Stick``.
+
+    All figures show tools by this name, and what is said of figures does.
+    """
     return shown(name[:1].upper() + name[1:])
+
+
+def broken_words(tool: str, shape: str) -> str:
+    """Return a tool and what it became, if that is another: ``T-hook that became L-hook``."""
+    names = [tool_words(name) for name in dict.fromkeys((tool, shape))]
+    return " that became ".join(names)
 
 
 def behavior_words(call: BehaviorCall) -> str:
     """Return a behavior's name as a sentence begins: ``Extend arm``."""
-    return tool_words(call.name)
+    return shown(call.name[:1].upper() + call.name[1:])
 
 
 def call_words(call: BehaviorCall) -> str:

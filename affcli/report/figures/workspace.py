@@ -32,7 +32,11 @@ ASPECTS = 0.5, 1.5
 
 
 def workspace_figure(
-    workspace: Workspace, tool: Tool, reach: Reach, tasks: Sequence[Task]
+    workspace: Workspace,
+    tool: Tool,
+    reach: Reach,
+    tasks: Sequence[Task],
+    width: float | None = None,
 ) -> Figure:
     """Return the table from above: goals, starts, the tool at its start, the bare arm's reach.
 
@@ -43,11 +47,12 @@ def workspace_figure(
         tool: which lies at the centre of the table.
         reach: of the wrist, without a tool.
         tasks: whose goals and starts are drawn.
+        width: in; that of a column if not given.
     """
     table, wrist = workspace.table, Pose(*workspace.wrist_start)
     goals = {task.goal.name: task.goal for task in tasks}
     starts = {task.start_name: task.start for task in tasks}
-    with canvas(ONE_COLUMN) as figure:
+    with canvas(width or ONE_COLUMN) as figure:
         (axes,) = map_panels(figure, 1, 1)
         draw_table(axes, table)
         corners = [(-table.half_width, table.near), (table.half_width, table.far)]

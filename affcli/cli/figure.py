@@ -1,0 +1,140 @@
+"""What every figure has on the command line: where to, how wide, what stands over and under it."""
+
+import inspect
+from collections.abc import Callable
+from functools import wraps
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+
+import typer
+
+from affcli.cli.files import require_new, save
+from affcli.cli.options import FIGURE_ENDINGS, Force, check_if_given
+from affcli.cli.terminal import say
+from affcli.errors import BadInputError, one_line
+from affcli.lab.drawing import require_figures
+from affcli.report import figures
+from affcli.report.captions import Words
+
+if TYPE_CHECKING:
+    from affcli.report.figures.canvas import Drawing
+
+NARROWEST, WIDEST = 3.0, 15.0
+"""Widths of figures (in): narrower than any journal's column, as wide as a poster's."""
+COARSEST, FINEST = 50, 600
+"""Pixels an inch of a PNG."""
+LONGEST_TITLE = 200
+"""Letters of a title."""
+MOST_SAID = 800
+"""Letters of what is said of a figure on the terminal."""
+
+
+class Figure(NamedTuple):
+    """A figure that a command draws.
+
+    Args:
+        words: its title and its caption.
+        draw: draws it as wide as asked (in), or as suits it.
+        note: said on the terminal alone; may be empty.
+    """
+
+    words: Words
+    draw: "Callable[[float | None], Drawing]"
+    note: str = ""
+
+
+def _checked_width(width: float) -> float:
+    if not NARROWEST <= width <= WIDEST:  # nor is it when it is no number
+        raise BadInputError(f"--width {width}: must lie in {NARROWEST:g} to {WIDEST:g} inches")
+    return width
+
+
+def _checked_dpi(dpi: int) -> int:
+    if not COARSEST <= dpi <= FINEST:
+        raise BadInputError(f"--dpi {one_line(dpi, 40)}: must lie in {COARSEST} to {FINEST}")
+    return dpi
+
+
+def _checked_title(title: str) -> str:
+    if len(title) > LONGEST_TITLE:
+        raise BadInputError(f"--title of {len(title)} letters: at most {LONGEST_TITLE} fit")
+    return title
+
+
+def _page(
+    *,
+    out: Annotated[
+        Path, typer.Option("--out", help="The figure: *.png, *.svg or *.pdf.", metavar="FILE")
+    ],
+    width: Annotated[
+        float | None,
+        typer.Option(
+            "--width",
+            help="Inches: 3.5 for a column, 7 for two.",
+            metavar="INCHES",
+            callback=check_if_given(_checked_width),
+        ),
+    ] = None,
+    dpi: Annotated[
+        int,
+        typer.Option("--dpi", help="Pixels an inch of a PNG.", metavar="N", callback=_checked_dpi),
+    ] = 300,
+    title: Annotated[
+        str | None,
+        typer.Option(
+            "--title",
+            help='In place of its own title; "" for none.',
+            metavar="TEXT",
+            callback=check_if_given(_checked_title),
+        ),
+    ] = None,
+    no_caption: Annotated[
+        bool,
+        typer.Option("--no-caption", help="Without the line that says of what it is."),
+    ] = False,
+    force: Force = False,
+) -> None:
+    """Say which options every figure has."""
+
+
+def figure(draws: Callable[..., Figure]) -> Callable[..., None]:
+    """Make a command of a function that says what to draw: with the options that all figures have.
+
+    Whether the file can be written is looked at before any work.
+    """
+    own, shared = (inspect.signature(f, eval_str=True).parameters for f in (draws, _page))
+
+    @wraps(draws)
+    def command(
+        *,
+        out: Path,
+        width: float | None,
+        dpi: int,
+        title: str | None,
+        no_caption: bool,
+        force: bool,
+        **given: Any,
+    ) -> None:
+        require_new(out, force=force, endings=FIGURE_ENDINGS)
+        require_figures()
+        asked = draws(**given)
+        over, under = asked.words
+        save(
+            out,
+            figures.canvas.encoded(
+                asked.draw(width),
+                out.suffix,
+                title=over if title is None else title,
+                caption="" if no_caption else under,
+                dpi=dpi,
+            ),
+        )
+        said = one_line(f"{over}; {under}", MOST_SAID)
+        say(f"{said}: {one_line(out)}{asked.note}")
+
+    command.__signature__ = inspect.Signature([*own.values(), *shared.values()])
+    command.__annotations__ = {
+        **{name: one.annotation for name, one in {**own, **shared}.items()},
+        "return": None,
+    }
+    return command

@@ -1,0 +1,184 @@
+"""What is said of a figure, over and under it: what it shows, of whom, and what is not default."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from affcli.analysis.adaptation import AdaptationCourse
+from affcli.analysis.comparison import Results
+from affcli.analysis.curves import Curve
+from affcli.analysis.paper import PLANNER
+from affcli.analysis.prediction import Push
+from affcli.analysis.statistics import ENOUGH_ROBOTS
+from affcli.core.records import LearningRunInfo, SessionInfo, TrialInfo
+from affcli.core.specs import LearningSpec, SessionSpec, TrialSpec, VerificationSpec
+from affcli.core.tool import Tool
+from affcli.report.figures.words import broken_words, tool_words
+from affcli.report.words import clock, many, run_words, settings_words
+from affcli.simulation.arm import Reach
+
+HOURS = 1.0
+"""Of a learning run that says nothing of its length: the paper's hour (§6)."""
+
+
+LEARNING = "Learning over robot time"
+
+
+class Words(NamedTuple):
+    """What is said of a figure.
+
+    Args:
+        title: what it shows.
+        caption: whose it is: tool, run, seed, robots, session, what is not default.
+    """
+
+    title: str
+    caption: str
+
+
+def joined(*facts: str) -> str:
+    """Return facts as one line, without those that are empty."""
+    return "; ".join(filter(None, facts))
+
+
+def differing(spec: LearningSpec | SessionSpec) -> str:
+    """Return what of a run or session is not default: settings, parts, sensor."""
+    return _not_default(run_words(spec))
+
+
+def differing_settings(settings: str) -> str:
+    """Return what of settings, as a spec keeps them, is not default."""
+    return _not_default(settings_words(settings))
+
+
+def _not_default(words: str) -> str:
+    return "default settings" if words == "defaults" else f"not default: {words}"
+
+
+def workspace_words(tool: Tool, reach: Reach, settings: str) -> Words:
+    """Return what lies on the table, and what of its sizes is not default."""
+    bare = f"the bare arm reaches from {reach.inner:.1f} to {reach.outer:.1f} in"
+    what = f"{tool_words(tool.name)} at the centre"
+    return Words("The table as a trial begins", joined(what, bare, differing_settings(settings)))
+
+
+def tools_words(whole: Tool, left: Tool, settings: str) -> Words:
+    """Return which tool broke, and what of the sizes is not default."""
+    broke = broken_words(whole.name, left.name)
+    return Words("The tools, to scale", joined(broke, differing_settings(settings)))
+
+
+def run_name(run: LearningRunInfo) -> str:
+    """Return what tells a learning run from others: ``run 5: T-hook, seed 3``."""
+    spec = run.spec
+    robot = "" if run.session_id is None else f", robot {spec.robot} of session {run.session_id}"
+    unfinished, length = run.status != "done", clock(run.robot_seconds)
+    far = f", {length}" if unfinished or spec.hours != HOURS else ""
+    so_far = " so far (unfinished)" if unfinished else ""
+    return f"run {run.id}: {tool_words(spec.tool)}, seed {spec.seed}{robot}{far}{so_far}"
+
+
+def run_caption(*runs: LearningRunInfo) -> str:
+    """Return which learning runs it is of, and what is not default; once, if it is the same."""
+    differences = [differing(run.spec) for run in runs]
+    if len(set(differences)) == 1:
+        return joined(*map(run_name, runs), differences[0])
+    return joined(*(f"{run_name(r)}, {d}" for r, d in zip(runs, differences, strict=True)))
+
+
+def session_caption(session: SessionInfo, robots: int) -> str:
+    """Return which session it is of, of how many robots, and what is not default."""
+    spec = session.spec
+    unfinished = "" if session.status == "done" else ", unfinished"
+    which = f"session {session.id} ({spec.kind}{unfinished})"
+    return joined(f"{which}, {many(robots, 'robot')}, seed {spec.seed}", differing(spec))
+
+
+def trial_words(info: TrialInfo, run: LearningRunInfo) -> Words:
+    """Return which trial it is."""
+    spec = info.spec
+    tool = broken_words(spec.tool, spec.shape)
+    return Words(
+        f"Trial {info.id}: {tool}, goal {spec.goal}, start {spec.start}",
+        joined(trial_seed(spec), run_caption(run)),
+    )
+
+
+def trial_seed(spec: TrialSpec) -> str:
+    """Return the seed of a trial, and its planner and sensor where they are not the usual ones."""
+    planner = "" if str(spec.planner) == PLANNER else f", planner {spec.planner}"
+    sensor = "" if spec.sensor == "noisy" else f", sensor {spec.sensor}"
+    return f"seed {spec.seed}{planner}{sensor}"
+
+
+def curves_words(curves: Sequence[Curve]) -> Words:
+    """Return which learning runs they are; the key of the figure tells several apart."""
+    if len(curves) == 1:
+        return Words(LEARNING, run_caption(curves[0].run))
+    return kinds_words(curves)
+
+
+def kinds_words(curves: Sequence[Curve]) -> Words:
+    """Return how many learning runs they are, and what of them is not default."""
+    runs = [curve.run for curve in curves]
+    by_difference: dict[str, list[str]] = {}
+    for run in runs:
+        by_difference.setdefault(differing(run.spec), []).append(str(run.id))
+    if len(by_difference) == 1:
+        return Words(LEARNING, joined(many(len(runs), "learning run"), *by_difference))
+    facts = [f"{', '.join(ids)}: {words}" for words, ids in by_difference.items()]
+    return Words(LEARNING, joined(many(len(runs), "learning run"), *(f"run {f}" for f in facts)))
+
+
+def robots_words(session: SessionInfo, robots: int) -> Words:
+    """Return whose learning it is."""
+    return Words(LEARNING, session_caption(session, robots))
+
+
+def results_words(results: Results) -> Words:
+    """Return whose results they are, and why there are no intervals where some are expected."""
+    if results.session is not None:
+        whose = session_caption(results.session, results.robots)
+        whose = joined(whose, few_robots_note(results.robots))
+    else:
+        runs = [
+            f"run {number}: {tool_words(spec.tool)}, seed {spec.seed}, sensor {sensor}"
+            for sensor, some in results.runs.items()
+            for number, spec in some.items()
+        ]
+        whose = joined(f"one robot a tool: {'; '.join(runs)}")
+    return Words("Successes beside the paper's", whose)
+
+
+def few_robots_note(robots: int) -> str:
+    """Return that robots are too few for intervals; empty when they are not."""
+    return f"too few robots for intervals ({ENOUGH_ROBOTS} or more)" * (robots < ENOUGH_ROBOTS)
+
+
+def adaptation_words(course: AdaptationCourse) -> Words:
+    """Return whose trials they are, and why there are no intervals.
+
+    Over one robot's trials there are some.
+    """
+    robots = course.session.spec.robots
+    return Words(
+        f"Adaptation: {broken_words(course.tool, course.shape)}",
+        joined(
+            f"{many(course.trials, 'trial')} with the broken tool",
+            session_caption(course.session, robots),
+            "" if course.run is None else run_name(course.run),
+            few_robots_note(robots) if robots > 1 else "",
+        ),
+    )
+
+
+def prediction_words(run: LearningRunInfo, spec: VerificationSpec, pushes: Sequence[Push]) -> Words:
+    """Return whose table predicts, and what."""
+    sensor = "" if spec.sensor == run.spec.sensor else f", sensor {spec.sensor}"
+    moved = f"{sum(push.moved for push in pushes)} moved the puck"
+    return Words(
+        "Predictions of fresh pushes as the table grows",
+        joined(
+            f"pushes: {len(pushes)}, of which {moved}; their seed: {spec.seed}{sensor}",
+            run_caption(run),
+        ),
+    )
