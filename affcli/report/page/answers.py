@@ -21,6 +21,7 @@ from affcli.core.replay import Replay
 from affcli.core.specs import Protocol, TrialRecord
 from affcli.core.trial import Outcome, is_counted
 from affcli.errors import one_line
+from affcli.report.breaking import growth_words
 from affcli.report.page.content import Broken, Content, LearnedRows
 from affcli.report.page.drawings import sector
 from affcli.report.replaying import by_reason
@@ -143,7 +144,8 @@ def forgot(broken: Broken) -> str:
     has_side = missing_side(learned.run.spec.held, spec.held) != 0.0
     side = f"with {missing} of these the puck lay on the side that is gone, and "
     paper = papers_breaking(spec, learned.run.spec)
-    return (
+    grew = growth_words(learned.run.spec.held, spec.held)
+    return f"{grew} ".lstrip() + (
         f"{len(dead)} of its {len(learned.rows)} rows were excluded in at least one of "
         f"{tally.trials} trials; {side if has_side else 'of these, '}{lost} are truly lost: the "
         f"{one_line(spec.shape, 60)} cannot do them. {tally.tries_on_lost} of {tally.tries} tries "
