@@ -125,7 +125,7 @@ def _latest(trials: Iterable[TrialInfo], runs: Sequence[int]) -> list[TrialInfo]
     for trial in sorted(trials, key=lambda t: (t.spec.counters is Counters.STORED, t.id)):
         spec = trial.spec
         kind = (spec.protocol, spec.tool, spec.shape, spec.task.task_set, spec.goal, spec.start)
-        by_kind[(*kind, str(spec.planner))] = trial
+        by_kind[(*kind, str(spec.planner), spec.sensor)] = trial
     goals = in_order(trial.spec.goal for trial in by_kind.values())
     starts = in_order(trial.spec.start for trial in by_kind.values())
 
@@ -138,10 +138,15 @@ def _latest(trials: Iterable[TrialInfo], runs: Sequence[int]) -> list[TrialInfo]
 
 
 def _broken(tools: Iterable[LearnedRows], replays: Iterable[Replay]) -> list[Broken]:
-    """Return each tool that became another shape, with the trials that tell what came of it."""
+    """Return each tool that became another shape, with the trials that tell what came of it.
+
+    Trials at other tasks, with another planner or through another sensor stand for themselves.
+    """
     learned = {one.run.id: one for one in tools}
-    adapted: dict[tuple[int, str], list[Replay]] = {}
+    adapted: dict[tuple[object, ...], list[Replay]] = {}
     for replay in replays:
-        if replay.spec.shape != replay.spec.tool and is_counted(replay.outcome):
-            adapted.setdefault((replay.run_id, replay.spec.shape), []).append(replay)
-    return [Broken(learned[run], trials) for (run, _), trials in adapted.items()]
+        spec = replay.spec
+        if spec.shape != spec.tool and is_counted(replay.outcome):
+            by = replay.run_id, spec.shape, spec.task.task_set, str(spec.planner), spec.sensor
+            adapted.setdefault(by, []).append(replay)
+    return [Broken(learned[trials[0].run_id], trials) for trials in adapted.values()]

@@ -7,10 +7,12 @@ from pathlib import Path
 import pytest
 
 from affcli.analysis.breaking import missing_side
+from affcli.core.identity import Component
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import Counters, Protocol
 from affcli.core.trial import Outcome
 from affcli.errors import DatabaseError, UsageError
+from affcli.lab.overview import overview_of
 from affcli.lab.page import content_of
 from affcli.report.page.content import Content
 from affcli.report.page.rendering import render
@@ -19,6 +21,7 @@ from tests.lab.quick import (
     IMPATIENT,
     INTERRUPTED,
     LEISURELY,
+    PLANNER,
     altered,
     breaking,
     counted,
@@ -113,6 +116,21 @@ def test_every_shape_that_a_tool_became_is_told_of(store: Store, run: LearningRu
     assert content.left_out == 16 + 2 * 16
     page = render(content, "")
     assert page.count("that became the") == 2
+
+
+def test_a_tool_that_broke_is_told_of_by_planner(store: Store, run: LearningRunInfo) -> None:
+    """And by task set and sensor: trials of one kind say nothing of another."""
+    other = Component.of("nested-query", {"share": 0.05})
+    for planner in (PLANNER, other):
+        counted(breaking(store, run, planner=planner))
+    content = content_of(store)
+    planners = [{str(t.spec.planner) for t in broken.trials} for broken in content.broken]
+    assert sorted(planners, key=str) == [{"nested-query"}, {"nested-query:share=0.05"}]
+    assert [len(broken.trials) for broken in content.broken] == [16, 16]
+    said = render(content, "")
+    assert "The t-hook that became the l-hook</h3>" in said
+    assert "The t-hook that became the l-hook, nested-query:share=0.05</h3>" in said
+    assert said.count("(paper: 16 of 16)") == 1
 
 
 def test_only_the_latest_run_of_a_tool_counts(store: Store, run: LearningRunInfo) -> None:
@@ -285,3 +303,15 @@ def test_what_cannot_be_read_is_refused(store: Store, run: LearningRunInfo) -> N
     altered(store.path, "UPDATE learning_run SET versions = '7'")
     with pytest.raises(DatabaseError, match="learning run 1 holds"):
         gathered(store.path)
+
+
+def test_a_run_that_was_done_beside_an_interrupted_one_is_listed_alone(
+    store: Store, run: LearningRunInfo
+) -> None:
+    """An older affcli could begin it again; both are the same robot with the same tool."""
+    begun = store.learning.begin(spec_of(behaviors=400, seed=9, settings=IMPATIENT), {}, now())
+    with open_store(store.path, create=False, write=False) as again:
+        assert [one.id for one, _ in overview_of(again).learned] == [run.id, begun.id]
+    altered(store.path, f"UPDATE learning_run SET seed = 0 WHERE id = {begun.id}")
+    with open_store(store.path, create=False, write=False) as again:
+        assert [one.id for one, _ in overview_of(again).learned] == [run.id]

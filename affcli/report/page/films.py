@@ -89,6 +89,7 @@ def _which(spec: TrialSpec) -> dict[str, str]:
         "tasks": spec.task_set,
         "goal": spec.goal,
         "start": spec.start,
+        "sensor": spec.sensor,
     }
 
 

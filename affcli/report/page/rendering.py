@@ -180,7 +180,8 @@ def _tool_section(learned: LearnedRows) -> dict[str, Any]:
 def _broken_section(broken: Broken) -> dict[str, Any]:
     """Return what the page shows of a tool that broke."""
     dead, rows = answers.excluded_rows(broken), broken.learned.rows
-    spec, left = broken.learned.run.spec, broken.trials[0].spec.held
+    spec, trial = broken.learned.run.spec, broken.trials[0].spec
+    left = trial.held
     gone = {number: row.trials for number, row in dead.items()}
     drawn = drawings.panels(spec.held, spec.binding, rows, gone)
     table: dict[str, list[int]] = defaultdict(lambda: [0, 0, 0, 0])
@@ -194,6 +195,7 @@ def _broken_section(broken: Broken) -> dict[str, Any]:
         "answer": answers.forgot(broken),
         "tool": spec.held,
         "shape": left,
+        "by": row_name("", str(trial.planner), trial.task_set),
         "side": missing_side(spec.held, left) != 0.0,
         "panels": drawn,
         "frame": drawings.frame(drawn),
