@@ -117,7 +117,8 @@ def _excluded_table(dead: Sequence[DeadRow], trials: int, became: str) -> Sheet:
         ("behavior", "side", "rows", "truly lost", "times"),
         title=f"Rows excluded with the {became} tool: {len(dead)}, {missing} on the missing side",
         caption="side: where the attractor was; "
-        f"truly lost: the {became} shape cannot do it; times: over {many(trials, 'trial')}; --json lists each row",
+        f"truly lost: the {became} shape cannot do it; "
+        f"times: over {many(trials, 'trial')}; --json lists each row",
         left=("behavior", "side"),
     )
     groups: dict[tuple[str, bool], list[DeadRow]] = {}

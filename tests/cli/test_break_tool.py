@@ -99,7 +99,7 @@ def test_a_tool_that_becomes_a_bigger_one_is_said_to_grow(learned: Path) -> None
     assert "The stick grew: the l-hook has a left bar and a left hook more than it had." in ended
     assert "broken" not in ended
     assert "paper" not in ended
-    assert " l-hook (grew) " in done("report", "--db", learned).out
+    assert "(grew)" in done("report", "--db", learned).out
     again = done("break-tool", "--tool", "stick", "--becomes", "l-hook", "--json", "--db", learned)
     assert (again.json["parts_gained"], again.json["paper"]) == (["left bar", "left hook"], None)
     (broken,) = done("report", "--json", "--db", learned).json["broken"]
