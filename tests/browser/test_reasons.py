@@ -180,7 +180,7 @@ def test_the_table_of_trials_is_that_of_the_database(
     """The latest trial of each kind; of `solve` before those that `break-tool` did beside."""
     page = opened(life)
     query = """
-    SELECT t.id, t.tool || iif(t.shape = t.tool, '', ', broken: ' || t.shape), t.goal, t.start,
+    SELECT t.id, t.tool || iif(t.shape = t.tool, '', ', became ' || t.shape), t.goal, t.start,
            t.outcome, t.steps, (SELECT sum(replicated) FROM step WHERE trial_id = t.id)
     FROM trial t JOIN session s ON s.id = t.session_id
     WHERE s.kind = 'solve' OR t.shape <> t.tool ORDER BY t.shape <> t.tool, t.goal, t.start

@@ -13,6 +13,7 @@ from affcli.analysis.paper import (
     TRIALS,
     papers_breaking,
 )
+from affcli.analysis.prediction import scores
 from affcli.analysis.regions import UNKNOWN, region_of
 from affcli.analysis.reproduction import Reproduction
 from affcli.analysis.statistics import ENOUGH_ROBOTS, Spread
@@ -104,6 +105,27 @@ def pulls(learned: LearnedRows) -> str:
     return (
         f"{len(pulling)} of the {len(learned.rows)} rows of the {name} move the puck toward the "
         f"robot{_of_these_excluded(pulling)}.{near or ' By'} {_counted(calls)}."
+    )
+
+
+def worth(content: Content) -> str:
+    """Return how good a table is at predicting, and what testing it found."""
+    asked = next((one for one in reversed(content.tools) if one.pushes), None)
+    said = "Its table was not asked for predictions."
+    if asked is not None:
+        name, whole = one_line(asked.run.spec.tool, 60), scores(asked.pushes)[-1]
+        said = (
+            f"Of {len(asked.pushes)} fresh pushes with the {name}, {whole.moved} moved the puck: "
+            f"its table foretold {whole.hits} of these, and wrongly {whole.false_alarms} of the "
+            f"other {whole.still}."
+        )
+    if not content.verifications:
+        return f"{said} It has not tested its table itself: affcli verify --update"
+    last = content.verifications[-1]
+    return (
+        f"{said} Testing the table of run {last.run_id} with the {one_line(last.shape, 60)} in its "
+        f"hand, the robot found: {last.verdict or 'interrupted'} ({last.failed} of {last.live} "
+        "tries failed)."
     )
 
 
