@@ -87,6 +87,11 @@ def missing_side(tool: Tool, left: Tool) -> float:
     return middle_x(tool.parts_missing_in(left)) if left.parts else 0.0
 
 
+def parts_gained(tool: Tool, left: Tool) -> tuple[str, ...]:
+    """Return the parts that a tool did not have before: with any, it grew rather than broke."""
+    return tuple(part.name for part in left.parts_missing_in(tool)) if tool.parts else ()
+
+
 def dead_rows(broken: Iterable[TrialRecord], side: float) -> list[DeadRow]:
     """Return the rows that were excluded in broken-tool trials that count, oldest first.
 

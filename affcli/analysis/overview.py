@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from affcli.analysis.breaking import parts_gained
 from affcli.analysis.paper import EXTENSION_OF_REACH, other_parts, papers_break, papers_cell
 from affcli.analysis.reproduction import Reproduction
 from affcli.core.records import LearningRunInfo, SessionInfo, TrialInfo
@@ -96,6 +97,7 @@ class Breaking:
         session, run, seed, tool, shape, sensor, planner, task_set: which.
         papers: tool, shape, tasks, planner and the parts of learning are the paper's.
         broken, whole: counts of its trials.
+        grew: the shape has parts that the tool did not have.
     """
 
     session: int
@@ -109,6 +111,7 @@ class Breaking:
     papers: bool
     broken: ProtocolCounts
     whole: ProtocolCounts
+    grew: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,4 +181,5 @@ def breaking_of(
         papers=not other_parts(session.spec) and all(map(papers_break, adapting)),
         broken=counts[Protocol.TOOL_ADAPTATION],
         whole=counts[Protocol.EXTENSION_OF_REACH],
+        grew=bool(parts_gained(results[0].learned.held, first.held)),
     )

@@ -1,6 +1,7 @@
 """Counts and sums over stored records: what reports are made from."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from affcli.core.behavior import BehaviorCall
 from affcli.core.specs import Protocol
@@ -24,6 +25,31 @@ class BehaviorGroup:
     mean_movement: float | None
     mean_dx: float | None
     mean_dy: float | None
+
+
+class VerificationResult(NamedTuple):
+    """What one stored verification found.
+
+    Args:
+        id, run_id: which; the learning run whose table it tested.
+        tool, shape: what the robot believed to hold, and what it held.
+        sensor: through what it saw.
+        verdict: its words; None when it was interrupted.
+        live, failed: tries of rows that were not excluded; of these, not replicated.
+        decided_after: after how many tries the verdict could be told; None if it could not.
+        robot_seconds: how long it took; None when it was interrupted.
+    """
+
+    id: int
+    run_id: int
+    tool: str
+    shape: str
+    sensor: str
+    verdict: str | None
+    live: int
+    failed: int
+    decided_after: int | None
+    robot_seconds: float | None
 
 
 @dataclass(frozen=True, slots=True)

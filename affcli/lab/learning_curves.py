@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from affcli.analysis.curves import INTERVALS, Curve, ToolCurves
 from affcli.core.records import LearningRunInfo, SessionInfo
+from affcli.core.results import LearningInterval
 from affcli.errors import UsageError
 from affcli.report.words import run_words
 from affcli.store import Store
@@ -22,7 +23,9 @@ def curves_of(store: Store, runs: Sequence[LearningRunInfo]) -> list[Curve]:
         UsageError: a run has not begun.
     """
     seconds = _seconds(runs)
-    did = store.results.learning_intervals(seconds)
+    did: dict[int, list[LearningInterval]] = {}
+    for session in dict.fromkeys(run.session_id for run in runs):
+        did |= store.results.learning_intervals(seconds, session)
     return [Curve.of(run, did.get(run.id, ()), seconds) for run in runs]
 
 

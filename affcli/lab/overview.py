@@ -2,6 +2,7 @@
 
 from affcli.analysis.overview import Breaking, Overview, breaking_of, goal_counts
 from affcli.analysis.reproduction import Reproduction, failures_in
+from affcli.core.records import LearningRunInfo
 from affcli.core.specs import Protocol
 from affcli.store import Store
 
@@ -26,7 +27,7 @@ def reproduction_of(store: Store, session_id: int, robots: int) -> Reproduction:
 
 def overview_of(store: Store) -> Overview:
     """Return what the database holds: learned tools, trials, finished reproductions."""
-    runs = store.learning.runs()
+    runs = [run for run in store.learning.runs() if not _is_twin(store, run)]
     latest: dict[tuple[object, ...], Breaking] = {}  # of the same one done again, the last
     for session in store.sessions.all("break-tool"):
         losses = {protocol: store.results.losses(session.id, protocol) for protocol in Protocol}
@@ -49,3 +50,9 @@ def overview_of(store: Store) -> Overview:
         ],
         failed.invalid,
     )
+
+
+def _is_twin(store: Store, run: LearningRunInfo) -> bool:
+    """Tell whether a run was interrupted and has been done beside it, as an older affcli could."""
+    same = None if run.status == "done" else store.learning.find(run.spec)
+    return same is not None and same.id != run.id and same.status == "done"

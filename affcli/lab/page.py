@@ -1,6 +1,7 @@
-"""Reading what the page shows: one robot's tools and trials, and what many robots gave."""
+"""Reading what the page shows: some robots' tools and trials, and what many robots gave."""
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 
 from affcli.analysis.paper import TOOLS
 from affcli.analysis.reproduction import Reproduction
@@ -9,55 +10,96 @@ from affcli.core.replay import Replay
 from affcli.core.specs import Counters
 from affcli.core.trial import is_counted
 from affcli.errors import AffcliError, UsageError, one_line
+from affcli.lab.learning_curves import curves_of, curves_of_robots
 from affcli.lab.overview import reproduction_of
+from affcli.lab.predicting import predict, prediction_spec
 from affcli.lab.replaying import replay_trial
 from affcli.report.page.content import Broken, Content, LearnedRows
 from affcli.report.words import in_order
 from affcli.store import Store
 
+MOST_ROBOTS = 5
+"""So many robots of a reproduction, or runs of one tool, are on a page: a tool's rows take some
+20 kB. Films, some 1 MB for a robot's 96 trials, are there only of robots that were asked for."""
+PUSHES = 200
+"""So many fresh pushes a table is asked about; half a second for each."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Shown:
+    """Who is to be shown.
+
+    Args:
+        name: whose trials can be replayed, in words.
+        filmed, others: their learning runs, and those of others to choose from.
+        trials, their_trials: of the former and of the latter.
+        left_out: trials of the former that are not shown.
+        not_shown: robots that are not shown at all.
+    """
+
+    name: str
+    filmed: Sequence[LearningRunInfo]
+    others: Sequence[LearningRunInfo]
+    trials: Sequence[TrialInfo]
+    their_trials: Sequence[TrialInfo]
+    left_out: int = 0
+    not_shown: int = 0
+
 
 def content_of(
     store: Store,
-    robot: int | None = None,
+    robots: Sequence[int] = (),
     session: int | None = None,
     done: Callable[[int, int], object] = lambda _, __: None,
+    runs: Sequence[int] = (),
 ) -> Content:
     """Return what the page shows.
 
     Args:
         store: open.
-        robot: which robot of a reproduction; None for the one that learned by `learn`, if there is
-            one, else the first of the latest reproduction.
+        robots: whose trials are replayed, of a reproduction; when none is named, those of the
+            robot that learned by `learn`, if there is one, else of the first robot.
         session: which reproduction; None for the latest.
         done: told how many trials have been replayed, and of how many.
+        runs: whose trials are replayed, of learning runs, instead of the latest one of each tool.
 
     Raises:
-        UsageError: there is nothing to show, or no such robot or reproduction.
+        UsageError: there is nothing to show, no such robot, run or reproduction; or too many.
     """
+    if len(set(robots)) > MOST_ROBOTS:
+        raise UsageError(f"--robot: of {MOST_ROBOTS} robots at most the films fit into a page")
     result = _reproduction(store, session)
-    name, runs, trials, left_out = _life(store, robot, session, result)
-    tools = [
-        LearnedRows(run, {row.id: row.row for row in store.learning.rows(run.id)}) for run in runs
-    ]
+    shown = _own(store, runs) if runs or not (robots or session) else None
+    if shown is None:
+        shown = _of_reproduction(store, robots, result)
     replays, not_replayed = [], {}
-    for number, trial in enumerate(trials, 1):
+    for number, trial in enumerate(shown.trials, 1):
         # What this affcli cannot do again is said on the page, and the rest is shown.
         try:
             replays.append(replay_trial(store, trial.id))
         except AffcliError as error:
             not_replayed[trial.id] = str(error)
-        done(number, len(trials))
-    versions = runs[-1].versions
+        done(number, len(shown.trials))
+    tools = [_with_predictions(store, _learned(store, run)) for run in shown.filmed]
+    others = [replace(_learned(store, run), filmed=False) for run in shown.others]
+    every = [*shown.filmed, *shown.others]
+    timed = [run for run in every if run.robot_seconds > 0.0]
+    bands = [] if every[0].session_id is None else curves_of_robots(store, every[0].session_id)[1]
     return Content(
         database=one_line(store.path.name),
-        robot=name,
+        robot=shown.name,
         reproduction=result,
-        tools=tools,
+        tools=[*tools, *others],
         replays=replays,
         not_replayed=not_replayed,
-        left_out=left_out,
+        left_out=shown.left_out,
         broken=_broken(tools, replays),
-        versions={one_line(name): one_line(version) for name, version in versions.items()},
+        versions={one_line(k): one_line(v) for k, v in shown.filmed[-1].versions.items()},
+        others=shown.their_trials,
+        curves={curve.run.id: curve for curve in curves_of(store, timed)} if timed else {},
+        bands={one.tool: one for one in bands},
+        verifications=store.results.verifications(run.id for run in every),
+        not_shown=shown.not_shown,
     )
 
 
@@ -74,21 +116,45 @@ def _reproduction(store: Store, session: int | None) -> Reproduction | None:
     return reproduction_of(store, number, robots[number])
 
 
-def _life(
-    store: Store, robot: int | None, session: int | None, result: Reproduction | None
-) -> tuple[str, Sequence[LearningRunInfo], Sequence[TrialInfo], int]:
-    """Return who is to be shown: the name, what it learned, its trials, how many are left out."""
-    latest = _latest_runs(store)
-    if latest and robot is None and session is None:
-        every = [t for run in latest for t in store.trials.trials(run_id=run.id)]
-        trials = _latest(every, [run.id for run in latest])
-        seeds = sorted({run.spec.seed for run in latest})
-        name = f"the robot of seed {', '.join(map(str, seeds))}"
-        return name, latest, trials, len(every) - len(trials)
+def _own(store: Store, numbers: Sequence[int]) -> _Shown | None:
+    """Return the learning runs asked for, or the latest of each tool, and others of these tools.
+
+    None when none is asked for and nothing was learned by `learn`.
+    """
+    filmed = [store.learning.run(number) for number in dict.fromkeys(numbers)]
+    for run in filmed:
+        if run.status != "done":
+            raise UsageError(f"run {run.id} is not finished; go on with it first: --resume")
+    if len(filmed) > MOST_ROBOTS:
+        raise UsageError(f"--run: of {MOST_ROBOTS} runs at most the films fit into a page")
+    done = store.learning.runs(status="done")
+    latest = {run.spec.tool: run for run in done}
+    filmed = filmed or [latest[tool] for tool in dict.fromkeys([*TOOLS, *latest]) if tool in latest]
+    if not filmed:
+        return None
+    ids, others = [run.id for run in filmed], []
+    for tool in dict.fromkeys(run.spec.tool for run in filmed):
+        room = MOST_ROBOTS - sum(run.spec.tool == tool for run in filmed)
+        more = [run for run in reversed(done) if run.spec.tool == tool and run.id not in ids]
+        others += more[:room]
+    every = [trial for run in ids for trial in store.trials.trials(run_id=run)]
+    theirs = [trial for run in others for trial in store.trials.trials(run_id=run.id)]
+    trials = _latest(every, ids)
+    seeds = list(dict.fromkeys(_robot(run) for run in filmed))
+    name = f"the robot{'s' if len(seeds) > 1 else ''} of {', '.join(seeds)}"
+    return _Shown(
+        *(name, filmed, others, trials),
+        *(_latest(theirs, [run.id for run in others]), len(every) - len(trials)),
+        sum(run.spec.tool in latest for run in done) - len(filmed) - len(others),
+    )
+
+
+def _of_reproduction(store: Store, robots: Sequence[int], result: Reproduction | None) -> _Shown:
+    """Return the robots of a reproduction that were asked for, else its first, and some others."""
     if result is None:
         where = one_line(store.path)
-        if robot is not None:
-            raise UsageError(f"no robot {robot} in {where}: there is no reproduction in it")
+        if robots:
+            raise UsageError(f"no robot {robots[0]} in {where}: there is no reproduction in it")
         begun = [str(run.id) for run in store.learning.runs(status="running")]
         if begun:
             raise UsageError(
@@ -96,23 +162,48 @@ def _life(
                 "with the command that began it"
             )
         raise UsageError(f"nothing learned in {where}; first run: affcli learn --tool t-hook")
-    number = robot or 0
     of = result.session
-    runs = [r for r in store.learning.runs(session_id=of.id) if r.spec.robot == number]
-    if not runs:
-        raise UsageError(
-            f"no robot {number} in session {of.id}; they are numbered 0 to {result.robots - 1}"
-        )
-    name = f"robot {number} of {result.robots}, seed {of.spec.seed}"
-    of_robot = [t for run in runs for t in store.trials.trials(run_id=run.id)]
-    return name, runs, sorted(of_robot, key=lambda t: t.id), 0
+    runs: dict[int, list[LearningRunInfo]] = {}
+    for run in store.learning.runs(session_id=of.id):
+        runs.setdefault(run.spec.robot, []).append(run)
+    asked = list(dict.fromkeys(robots)) or [min(runs)]
+    for number in asked:
+        if number not in runs:
+            raise UsageError(
+                f"no robot {number} in session {of.id}; they are numbered 0 to {result.robots - 1}"
+            )
+    more = [number for number in sorted(runs) if number not in asked][: MOST_ROBOTS - len(asked)]
+    filmed, others = ([run for number in some for run in runs[number]] for some in (asked, more))
+    trials, theirs = (
+        sorted((t for run in some for t in store.trials.trials(run_id=run.id)), key=lambda t: t.id)
+        for some in (filmed, others)
+    )
+    names = f"robot{'s' if len(asked) > 1 else ''} {', '.join(map(str, asked))}"
+    name = f"{names} of {result.robots}, seed {of.spec.seed}"
+    return _Shown(
+        name, filmed, others, trials, theirs, not_shown=len(runs) - len(asked) - len(more)
+    )
 
 
-def _latest_runs(store: Store) -> list[LearningRunInfo]:
-    """Return the latest finished learning run of each tool, the paper's tools first."""
-    learned = dict.fromkeys(run.spec.tool for run in store.learning.runs(status="done"))
-    tools = dict.fromkeys([*(tool for tool in TOOLS if tool in learned), *learned])
-    return [run for run in map(store.learning.latest, tools) if run is not None]
+def _robot(run: LearningRunInfo) -> str:
+    """Return whose a learning run is, in words that tell it from the others of a page."""
+    return f"seed {run.spec.seed}" if run.session_id is None else f"robot {run.spec.robot}"
+
+
+def _learned(store: Store, run: LearningRunInfo) -> LearnedRows:
+    """Return what a learning run left."""
+    rows = {row.id: row.row for row in store.learning.rows(run.id)}
+    return LearnedRows(run, rows, _robot(run))
+
+
+def _with_predictions(store: Store, learned: LearnedRows) -> LearnedRows:
+    """Return a table with what it says of fresh pushes; with the reason where that cannot be."""
+    run = learned.run
+    try:
+        spec = prediction_spec(run, run.spec.held, 0, None, PUSHES)
+        return replace(learned, pushes=list(predict(store, run, spec)))
+    except AffcliError as error:
+        return replace(learned, not_asked=str(error))
 
 
 def _latest(trials: Iterable[TrialInfo], runs: Sequence[int]) -> list[TrialInfo]:
@@ -125,7 +216,7 @@ def _latest(trials: Iterable[TrialInfo], runs: Sequence[int]) -> list[TrialInfo]
     for trial in sorted(trials, key=lambda t: (t.spec.counters is Counters.STORED, t.id)):
         spec = trial.spec
         kind = (spec.protocol, spec.tool, spec.shape, spec.task.task_set, spec.goal, spec.start)
-        by_kind[(*kind, str(spec.planner))] = trial
+        by_kind[(*kind, str(spec.planner), spec.sensor)] = trial
     goals = in_order(trial.spec.goal for trial in by_kind.values())
     starts = in_order(trial.spec.start for trial in by_kind.values())
 
@@ -138,10 +229,15 @@ def _latest(trials: Iterable[TrialInfo], runs: Sequence[int]) -> list[TrialInfo]
 
 
 def _broken(tools: Iterable[LearnedRows], replays: Iterable[Replay]) -> list[Broken]:
-    """Return each tool that became another shape, with the trials that tell what came of it."""
+    """Return each tool that became another shape, with the trials that tell what came of it.
+
+    Trials at other tasks, with another planner or through another sensor stand for themselves.
+    """
     learned = {one.run.id: one for one in tools}
-    adapted: dict[tuple[int, str], list[Replay]] = {}
+    adapted: dict[tuple[object, ...], list[Replay]] = {}
     for replay in replays:
-        if replay.spec.shape != replay.spec.tool and is_counted(replay.outcome):
-            adapted.setdefault((replay.run_id, replay.spec.shape), []).append(replay)
-    return [Broken(learned[run], trials) for (run, _), trials in adapted.items()]
+        spec = replay.spec
+        if spec.shape != spec.tool and is_counted(replay.outcome):
+            by = replay.run_id, spec.shape, spec.task.task_set, str(spec.planner), spec.sensor
+            adapted.setdefault(by, []).append(replay)
+    return [Broken(learned[trials[0].run_id], trials) for trials in adapted.values()]

@@ -3,10 +3,19 @@
 from collections.abc import Sequence
 from typing import Any
 
-from affcli.analysis.breaking import DeadRow, Tally, broken_and_whole, dead_rows, missing_side
+from affcli.analysis.breaking import (
+    DeadRow,
+    Tally,
+    broken_and_whole,
+    dead_rows,
+    missing_side,
+    parts_gained,
+)
 from affcli.analysis.paper import BROKEN, PLANNER, papers_breaking
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import TrialRecord
+from affcli.core.tool import Tool
+from affcli.errors import one_line
 from affcli.report.sheet import Sheet
 from affcli.report.words import call_words, many
 
@@ -17,6 +26,7 @@ def broken_json(run: LearningRunInfo, trials: Sequence[TrialRecord]) -> dict[str
     spec = broken[0].spec
     value: dict[str, Any] = {
         "becomes": spec.shape,
+        "parts_gained": parts_gained(run.spec.held, spec.held),
         "sensor": spec.sensor,
         "planner": str(spec.planner),
         "paper": BROKEN if papers_breaking(spec, run.spec) else None,
@@ -49,22 +59,33 @@ def broken_tables(run: LearningRunInfo, trials: Sequence[TrialRecord]) -> tuple[
     """
     broken, whole = broken_and_whole(trials)
     spec = broken[0].spec
+    grew = growth_words(run.spec.held, spec.held)
     tallies = Tally.of(broken), Tally.of(whole)
     tried, beside = (tally.trials for tally in tallies)
     heading = f"{tried} trials each" if tried == beside else "trials"
     planner = "" if str(spec.planner) == PLANNER else f"; planner: {spec.planner}"
+    became, was = ("grown", "as it was") if grew else ("broken", "whole")
     comparison = Sheet(
-        (heading, f"broken: {spec.shape}", "whole"),
-        title="The broken tool beside the whole one",
+        (heading, f"{became}: {spec.shape}", was),
+        title=f"The {became} tool beside the {'one it was' if grew else 'whole one'}",
         left=(heading,),
-        caption=f"seen through: {spec.sensor}{planner}",
+        caption=f"seen through: {spec.sensor}{planner}{f'{chr(10)}{grew}' if grew else ''}",
     )
     for label, left, right in zip(_LABELS, *map(_figures, tallies), strict=True):
         comparison.add(label, left, right)
     if papers_breaking(spec, run.spec):
         comparison.add("solved in the paper", f"{BROKEN} of 16", f"{BROKEN} of 16")
     dead = dead_rows(broken, missing_side(run.spec.held, spec.held))
-    return comparison, _excluded_table(dead, tried)
+    return comparison, _excluded_table(dead, tried, became)
+
+
+def growth_words(tool: Tool, left: Tool) -> str:
+    """Return the line that says that a tool grew and did not break; empty when it did not grow."""
+    gained = parts_gained(tool, left)
+    if not gained:
+        return ""
+    more = " and ".join(f"a {name}" for name in gained)
+    return one_line(f"The {tool.name} grew: the {left.name} has {more} more than it had.", 500)
 
 
 _LABELS = (
@@ -89,13 +110,14 @@ def _figures(tally: Tally) -> tuple[str, ...]:
     )
 
 
-def _excluded_table(dead: Sequence[DeadRow], trials: int) -> Sheet:
+def _excluded_table(dead: Sequence[DeadRow], trials: int, became: str) -> Sheet:
     """Return how many rows were excluded, by behavior and side; the JSON lists each."""
     missing = sum(row.on_missing_side for row in dead)
     table = Sheet(
         ("behavior", "side", "rows", "truly lost", "times"),
-        title=f"Rows excluded with the broken tool: {len(dead)}, {missing} on the missing side",
-        caption="side: where the attractor was; truly lost: the broken shape cannot do it; "
+        title=f"Rows excluded with the {became} tool: {len(dead)}, {missing} on the missing side",
+        caption="side: where the attractor was; "
+        f"truly lost: the {became} shape cannot do it; "
         f"times: over {many(trials, 'trial')}; --json lists each row",
         left=("behavior", "side"),
     )

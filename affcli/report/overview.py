@@ -57,7 +57,7 @@ def _breakings_table(breakings: Sequence[Breaking]) -> Sheet:
         table.add(
             str(breaking.run),
             breaking.tool,
-            breaking.shape,
+            f"{breaking.shape} (grew)" if breaking.grew else breaking.shape,
             breaking.sensor,
             *(values[number] for values in more.values()),
             _solved(breaking.broken),

@@ -56,6 +56,31 @@ def prediction_tables(
     return table, beside
 
 
+def predictions_table(tables: Sequence[tuple[str, str, Sequence[Push]]]) -> Sheet:
+    """Return what whole tables predict, one row each.
+
+    Args:
+        tables: whose each is, of which tool, and what was predicted and seen.
+    """
+    table = Sheet(
+        ("robot", "tool", "pushes", "moved", "hits", "false alarms", *ERROR_COLUMNS),
+        title="Fresh pushes, predicted by the nearest row of the same behavior (affcli predict)",
+        caption="hits, false alarms: of the pushes that moved the puck, and of those that did not, "
+        "the share of which the table said they would, with its 95 % interval; degrees, inches: "
+        "median error of the hits, and what 95 % of them stay below",
+        left=("robot", "tool"),
+    )
+    for robot, tool, pushes in tables:
+        whole = scores(pushes)[-1]
+        table.add(
+            *(robot, tool, str(len(pushes)), str(whole.moved)),
+            _share(whole.hits, whole.moved),
+            _share(whole.false_alarms, whole.still),
+            *_cells(whole.by_row),
+        )
+    return table
+
+
 def _share(count: int, of: int) -> str:
     """Return a share with its interval."""
     if not of:

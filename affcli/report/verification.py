@@ -7,6 +7,7 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from affcli.analysis.verification import JudgedTry, Share, Verification, shares
+from affcli.core.results import VerificationResult
 from affcli.core.verification import Evidence, Verdict, decided_after
 from affcli.report.sheet import Sheet
 from affcli.report.words import call_words, clock, many, movement_cell
@@ -108,6 +109,27 @@ def _drifted_table(drifted: Sequence[JudgedTry]) -> Sheet:
             movement_cell(record.expected),
             movement_cell(record.seen) if record.execution else record.placing.status.value,
             f"{record.times_successful_after}/{record.times_used_after}",
+        )
+    return table
+
+
+def verifications_table(found: Sequence[VerificationResult]) -> Sheet:
+    """Return what stored verifications found, one row each."""
+    words = ("table of", "held", "sensor", "verdict")
+    table = Sheet(
+        ("run", *words[:3], "tries", "failed", "verdict", "told after", "robot time"),
+        title="The table tested by the robot itself (affcli verify --update)",
+        caption="held: what the tool truly was; tries: of rows that were not excluded; failed: not "
+        "as expected; told after: so many tries",
+        left=words,
+    )
+    for one in found:
+        seconds, after = one.robot_seconds, one.decided_after
+        table.add(
+            *(str(one.run_id), one.tool, one.shape, one.sensor, str(one.live), str(one.failed)),
+            one.verdict or "interrupted",
+            "-" if after is None else str(after),
+            "-" if seconds is None else clock(seconds),
         )
     return table
 

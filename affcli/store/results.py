@@ -12,12 +12,21 @@ from affcli.core.results import (
     StepSums,
     SuccessCount,
     TrialGroup,
+    VerificationResult,
 )
 from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome, is_counted
 from affcli.store.connection import Database, tuples
 from affcli.store.reading import behavior_call, reading_what_was_written
-from affcli.store.tables import affordance, behavior, learning_run, step, trial
+from affcli.store.tables import (
+    affordance,
+    behavior,
+    learning_run,
+    replication,
+    step,
+    trial,
+    verification,
+)
 
 COUNTED = [outcome.value for outcome in Outcome if is_counted(outcome)]
 """How trials end that count."""
@@ -100,6 +109,28 @@ class Results:
         )
         ((lost, rows),) = self._all(wanted)
         return lost, rows
+
+    def verifications(self, run_ids: Iterable[int]) -> tuple[VerificationResult, ...]:
+        """Return what the verifications of learning runs found, oldest first."""
+        v, r, run = verification.c, replication.c, learning_run.c
+        failed = sa.and_(r.live == 1, r.replicated == 0)
+        wanted = (
+            sa.select(
+                *(v.id, v.learning_run_id, run.tool, v.shape, v.sensor, v.verdict),
+                sa.func.coalesce(sa.func.sum(r.live), 0),
+                sa.func.count(sa.case((failed, 1))),
+                *(v.decided_after, v.robot_seconds),
+            )
+            .select_from(
+                verification.join(learning_run, run.id == v.learning_run_id).outerjoin(
+                    replication, r.verification_id == v.id
+                )
+            )
+            .where(v.learning_run_id.in_(list(run_ids)))
+            .group_by(v.id)
+            .order_by(v.id)
+        )
+        return tuple(VerificationResult(*row) for row in self._all(wanted))
 
     def learning_intervals(
         self, seconds: float, session_id: int | None = None

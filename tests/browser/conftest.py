@@ -97,6 +97,14 @@ def many_database(browser: "Browser", tmp_path_factory: pytest.TempPathFactory) 
 
 
 @pytest.fixture(scope="session")
+def robots(browser: "Browser", tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The page of a reproduction with two robots."""
+    path = tmp_path_factory.mktemp("browser") / "robots.db"
+    done("reproduce", "--robots", "2", "--db", path)
+    return page_of(path)
+
+
+@pytest.fixture(scope="session")
 def many(many_database: Path) -> Path:
     """The page of that reproduction."""
     return page_of(many_database)

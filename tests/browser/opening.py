@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 PATIENCE = 60_000
 """Milliseconds after which a page is taken to hang; no test is about speed."""
-PHONE = {"width": 390, "height": 844}
+PHONE = {"width": 360, "height": 780}
 
 
 def page_of(database: Path) -> Path:

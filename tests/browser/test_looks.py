@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 QUESTIONS = [
     "Is the paper's table reproduced?",
     "Where does a tool afford pulling?",
+    "How fast did it learn, and is its table right?",
     "Why did the robot choose this row?",
     "What did it unlearn when the tool broke?",
     "How was this made, and how to cite it?",
@@ -56,12 +57,80 @@ def test_a_phone_shows_all_of_it_without_scrolling_sideways(opened: Opened, path
     page = opened(path, viewport=PHONE, has_touch=True, is_mobile=True)
     page.locator("details.tool").evaluate_all("all => all.forEach(one => { one.open = true; })")
     assert page.evaluate(WIDTH) == PHONE["width"]
-    # Wide tables are scrolled by themselves.
-    for table in page.locator("main table").all():
-        right = table.evaluate(
-            "table => (table.closest('.scroll') ?? table).getBoundingClientRect().right"
-        )
+    # Nothing of a table is cut off, nor a drawing wider than the page.
+    for table in page.locator("main table, main svg:not(.apart)").all():
+        right = table.evaluate("table => table.getBoundingClientRect().right")
         assert right <= PHONE["width"]
+
+
+@pytest.mark.parametrize("width", [360, 800, 1400])
+def test_no_list_is_cut_without_a_sign(opened: Opened, path: Path, width: int) -> None:
+    """Beside what scrolls stands how many there are, and a button that shows them all."""
+    page = opened(path, viewport={"width": width, "height": 900})
+    cut = "list => list.scrollHeight > list.clientHeight + 1"
+    for name, items in (("#trials .scroll.tall", "#list tbody tr"), ("#steps", "#steps li")):
+        box, said = page.locator(name), page.locator(f"{name} + .more")
+        count = page.locator(items).count()
+        assert box.evaluate(cut) == said.is_visible()
+        if not said.is_visible():
+            continue
+        assert text(said) == f"{count} in this list, which scrolls. Show all {count}"
+        said.locator("button").click()
+        assert not box.evaluate(cut)
+        assert text(said) == "Show fewer"
+        last = page.locator(items).last.bounding_box()
+        assert last is not None
+        assert last["height"] > 0
+        said.locator("button").click()
+        assert box.evaluate(cut)
+
+
+def test_a_wide_screen_has_columns(opened: Opened, life: Path) -> None:
+    """Film, reasons and procedure stand side by side, answers beside tables."""
+    page = opened(life, viewport={"width": 1400, "height": 900})
+    places = [page.locator(f"#player {one}").bounding_box() for one in (".film", "#why", "#flow")]
+    found = [place for place in places if place is not None]
+    assert len({round(place["y"] / 60) for place in found}) == 1
+    assert [place["x"] for place in found] == sorted(place["x"] for place in found)
+    assert found[-1]["x"] + found[-1]["width"] > 1300
+
+
+def test_arrows_have_axes_in_inches(opened: Opened, life: Path) -> None:
+    """The tip of the handle is drawn where the labels of the grid say that it is."""
+    page = opened(life, viewport={"width": 1400, "height": 900})
+    panel = page.locator("#tools .panel svg").first
+    ticks = page.locator("#axes-1 .tick").all_text_contents()
+    assert {"-10", "0", "10", "20"} <= set(ticks)
+    box, view = panel.bounding_box(), panel.get_attribute("viewBox")
+    wood = panel.locator(".wood").first.bounding_box()
+    assert box is not None
+    assert wood is not None
+    left, top, width, _ = map(float, (view or "").split())
+    inch = box["width"] / width
+    # The handle is 1 in broad around the wrist; its end lies where the y axis says 14.5.
+    assert (wood["x"] - box["x"]) / inch + left == pytest.approx(-0.5, abs=0.15)
+    assert 10 < -((wood["y"] - box["y"]) / inch + top) < 20
+
+
+def test_one_robot_of_several_can_be_chosen(opened: Opened, robots: Path) -> None:
+    page = opened(robots)
+    choice = page.locator("#whose")
+    assert [text(one) for one in choice.locator("option").all()] == [
+        *("all robots", "robot 0", "robot 1"),
+    ]
+    # The first is shown, with films; of the other there is all but these.
+    assert choice.input_value() == "robot 0"
+    tools, trials = page.locator("details.tool"), page.locator("#list tbody tr")
+    assert (tools.count(), trials.count()) == (10, 192)
+    for name in ("robot 1", "robot 0"):
+        choice.select_option(name)
+        shown = page.locator("details.tool:visible summary h3").all_text_contents()
+        assert [words.split(", ")[1] for words in shown] == [name] * 5
+        assert page.locator("#list tbody tr:visible").count() == 96
+        buttons = page.locator("#list tbody tr:visible .choose").count()
+        assert buttons == (96 if name == "robot 0" else 0)
+    choice.select_option("")
+    assert page.locator("details.tool:visible").count() == 10
 
 
 def test_a_phone_can_do_everything(opened: Opened, life: Path) -> None:

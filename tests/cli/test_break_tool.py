@@ -92,6 +92,25 @@ def test_the_tables_stand_beside_the_paper(learned: Path) -> None:
     assert excluded.startswith("Rows excluded with the broken tool: ")
 
 
+def test_a_tool_that_becomes_a_bigger_one_is_said_to_grow(learned: Path) -> None:
+    """And nothing of the paper stands beside it, whose T-hook lost its parts."""
+    ended = done("break-tool", "--tool", "stick", "--db", learned).out
+    assert ended.startswith("The grown tool beside the one it was\n")
+    assert "The stick grew: the l-hook has a left bar and a left hook more than it had." in ended
+    assert "broken" not in ended
+    assert "paper" not in ended
+    assert "(grew)" in done("report", "--db", learned).out
+    again = done("break-tool", "--tool", "stick", "--becomes", "l-hook", "--json", "--db", learned)
+    assert (again.json["parts_gained"], again.json["paper"]) == (["left bar", "left hook"], None)
+    (broken,) = done("report", "--json", "--db", learned).json["broken"]
+    assert (broken["grew"], broken["papers"]) == (True, False)
+    page = learned.with_suffix(".html")
+    done("report", "--html", page, "--db", learned)
+    section = page.read_text().split('<section id="broken"')[1].split("</section>")[0]
+    assert "The stick grew: the l-hook has a left bar and a left hook more" in section
+    assert "16 of 16" not in section
+
+
 def test_it_becomes_another_shape(learned: Path) -> None:
     before = learned.read_bytes()
     line = refused(2, "break-tool", "--tool", "t-hook", "--becomes", "t-hook", "--db", learned)

@@ -71,9 +71,10 @@ def test_of_a_reproduction_one_robot_is_shown(reproduced: Path) -> None:
 def test_nothing_of_it_comes_from_elsewhere(used: Path) -> None:
     page = page_of(used)
     assert not re.search(r"""(src|srcset|action|data|poster)\s*=\s*["']""", page)
-    assert set(re.findall(r'href="([^"]*)"', page)) == {
-        *("#results", "#tools", "#trials", "#broken", "#made"),
+    assert set(re.findall(r'<a href="([^"]*)"', page)) == {
+        *("#results", "#tools", "#worth", "#trials", "#broken", "#made"),
     }
+    assert all(target.startswith("#") for target in re.findall(r'href="([^"]*)"', page))
     assert "@import" not in page
     addresses = set(re.findall(r"https?://[^\s\"'<]+", page))
     assert addresses == {"http://www.w3.org/2000/svg"}
@@ -157,9 +158,17 @@ def test_a_full_disk_leaves_what_was_there(learned: Path, tmp_path: Path) -> Non
 
 
 NONSENSE = {
-    "a robot without a page": (("--robot", "0"), 2, "--robot and --session go with --html FILE"),
+    "a robot without a page": (
+        ("--robot", "0"),
+        2,
+        "--robot, --run and --session go with --html FILE",
+    ),
     "a session without a page": (("--session", "1"), 2, "go with --html FILE"),
     "page and JSON": (("--html", "x.html", "--json"), 2, "--html or --json: give one of them"),
+    "a run without a page": (("--run", "1"), 2, "--run and --session go with --html FILE"),
+    "a run and a robot": (("--html", "x.html", "--run", "1", "--robot", "0"), 2, "not both"),
+    "run 0": (("--html", "x.html", "--run", "0"), 4, "--run 0: must lie in 1 to"),
+    "no such run": (("--html", "x.html", "--run", "77"), 2, "no learning run 77"),
     "a negative robot": (("--html", "x.html", "--robot", "-1"), 4, "--robot -1: must lie in 0 to"),
     "session 0": (("--html", "x.html", "--session", "0"), 4, "--session"),
     "an absurd session": (("--html", "x.html", "--session", "9" * 30), 4, "--session"),

@@ -96,10 +96,14 @@ def solving(
 
 
 def breaking(
-    store: Store, run: LearningRunInfo, shape: str = "l-hook", seed: int = 0
+    store: Store,
+    run: LearningRunInfo,
+    shape: str = "l-hook",
+    seed: int = 0,
+    planner: Component = PLANNER,
 ) -> Iterator[tuple[int, TrialRecord, float]]:
     """Let the tool of a run break, and try what is left of it beside the whole one."""
-    return break_tool(store, run, tool_of(run.spec, shape), seed, now, PLANNER)
+    return break_tool(store, run, tool_of(run.spec, shape), seed, now, planner)
 
 
 def reproducing(store: Store, settings: Settings, robots: int, seed: int) -> Iterator[int]:

@@ -7,11 +7,16 @@ from pathlib import Path
 import pytest
 
 from affcli.analysis.breaking import missing_side
+from affcli.analysis.prediction import scores
+from affcli.core.identity import Component
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import Counters, Protocol
 from affcli.core.trial import Outcome
 from affcli.errors import DatabaseError, UsageError
-from affcli.lab.page import content_of
+from affcli.lab.overview import overview_of
+from affcli.lab.page import PUSHES, content_of
+from affcli.lab.predicting import predict, prediction_spec
+from affcli.lab.verifying import verification_spec, verify
 from affcli.report.page.content import Content
 from affcli.report.page.rendering import render
 from affcli.store import Store, open_store
@@ -19,14 +24,17 @@ from tests.lab.quick import (
     IMPATIENT,
     INTERRUPTED,
     LEISURELY,
+    PLANNER,
     altered,
     breaking,
     counted,
+    learned,
     now,
     reproducing,
     solving,
     spec_of,
     stored,
+    table_from,
     taken,
 )
 
@@ -115,13 +123,89 @@ def test_every_shape_that_a_tool_became_is_told_of(store: Store, run: LearningRu
     assert page.count("that became the") == 2
 
 
-def test_only_the_latest_run_of_a_tool_counts(store: Store, run: LearningRunInfo) -> None:
+def test_a_tool_that_broke_is_told_of_by_planner(store: Store, run: LearningRunInfo) -> None:
+    """And by task set and sensor: trials of one kind say nothing of another."""
+    other = Component.of("nested-query", {"share": 0.05})
+    for planner in (PLANNER, other):
+        counted(breaking(store, run, planner=planner))
+    content = content_of(store)
+    planners = [{str(t.spec.planner) for t in broken.trials} for broken in content.broken]
+    assert sorted(planners, key=str) == [{"nested-query"}, {"nested-query:share=0.05"}]
+    assert [len(broken.trials) for broken in content.broken] == [16, 16]
+    said = render(content, "")
+    assert "The t-hook that became the l-hook</h3>" in said
+    assert "The t-hook that became the l-hook, nested-query:share=0.05</h3>" in said
+    assert said.count("(paper: 16 of 16)") == 1
+
+
+def test_the_latest_run_of_a_tool_is_shown_with_its_films_and_others_without(
+    store: Store, run: LearningRunInfo
+) -> None:
     counted(solving(store, run, "2", "1"))
     again = stored(store, spec_of(behaviors=400, seed=3, settings=IMPATIENT))
     content = content_of(store)
-    assert [tool.run.id for tool in content.tools] == [again.id]
+    assert [(tool.run.id, tool.filmed) for tool in content.tools] == [
+        *((again.id, True), (run.id, False)),
+    ]
     assert content.replays == []
+    (listed,) = content.others
+    assert (listed.run_id, listed.spec.goal, listed.spec.start) == (run.id, "2", "1")
     assert content.robot == "the robot of seed 3"
+    asked = content_of(store, runs=[run.id])
+    assert [(tool.run.id, tool.filmed) for tool in asked.tools] == [
+        *((run.id, True), (again.id, False)),
+    ]
+    assert [replay.trial_id for replay in asked.replays] == [listed.id]
+    assert asked.others == []
+    page = render(content, "")
+    assert "<option>seed 3</option><option>seed 0</option>" in page
+    assert "Films are here of the robot of seed 3" in page
+    assert f'data-robot="seed 0" data-tool="t-hook" data-run="{run.id}"' in page
+    assert page.count('class="filmed"') == 0
+
+
+def test_at_most_five_robots_are_on_a_page(store: Store) -> None:
+    """And it is said how many more there are."""
+    for seed in range(7):
+        stored(store, spec_of(behaviors=60, seed=seed, settings=IMPATIENT))
+    content = content_of(store)
+    assert [tool.run.id for tool in content.tools] == [7, 6, 5, 4, 3]
+    assert content.not_shown == 2
+    assert "2 more are in the database." in render(content, "")
+    with pytest.raises(UsageError, match="--run: of 5 runs at most"):
+        content_of(store, runs=range(1, 7))
+    with pytest.raises(UsageError, match="--robot: of 5 robots at most"):
+        content_of(store, robots=range(6))
+
+
+def test_what_the_table_is_worth_is_on_the_page(store: Store, run: LearningRunInfo) -> None:
+    """Fresh pushes predicted, a verification that was recorded, how learning went."""
+    spec = verification_spec(run, run.spec.held, 0, None, 5, until_verdict=False)
+    counted(verify(store, run, spec, now, update=True))
+    content = content_of(store)
+    (tool,) = content.tools
+    fresh = prediction_spec(run, run.spec.held, 0, None, PUSHES)
+    assert tool.pushes == list(predict(store, run, fresh))
+    (found,) = content.verifications
+    assert (found.run_id, found.tool, found.shape, found.verdict) == (
+        *(run.id, "t-hook", "t-hook", "undecided"),
+    )
+    assert (found.live, found.decided_after) == (5, None)
+    assert content.curves[run.id].rows[-1] == run.rows
+    page = render(content, "")
+    score = scores(tool.pushes)[-1]
+    assert f"Of 200 fresh pushes with the t-hook, {score.moved} moved the puck" in page
+    assert f"its table foretold {score.hits} of these" in page
+    assert "the robot found: undecided" in page
+    assert f"{run.rows} rows of 400 behaviors" in page
+
+
+def test_a_table_without_rows_is_not_asked(store: Store) -> None:
+    specs = (spec_of("stick", behaviors=1, seed=seed, settings=IMPATIENT) for seed in range(20))
+    stored(store, next(spec for spec in specs if not table_from(learned(spec))))
+    content = content_of(store)
+    assert content.tools[0].pushes == ()
+    assert "Run 1 not asked for predictions: run 1 of the stick made no rows" in render(content, "")
 
 
 def test_a_run_that_is_still_learning_is_not_shown(store: Store) -> None:
@@ -194,7 +278,7 @@ def test_of_reproductions_the_first_robot_of_the_latest_is_shown(reproduced: Sto
 
 
 def test_another_robot_of_another_reproduction_can_be_asked_for(reproduced: Store) -> None:
-    content = content_of(reproduced, robot=1, session=1)
+    content = content_of(reproduced, robots=[1], session=1)
     assert content.robot == "robot 1 of 2, seed 7"
     assert {replay.spec.robot for replay in content.replays} == {1}
     assert all(replay.differences == () for replay in content.replays)
@@ -211,7 +295,7 @@ def test_a_robot_of_one_s_own_comes_before_those_of_a_reproduction(reproduced: S
     assert content.robot == "the robot of seed 0"
     assert [tool.run.id for tool in content.tools] == [run.id]
     assert content.reproduction is not None
-    assert content_of(reproduced, robot=0).robot == "robot 0 of 1, seed 8"
+    assert content_of(reproduced, robots=[0]).robot == "robot 0 of 1, seed 8"
     assert content_of(reproduced, session=1).robot == "robot 0 of 2, seed 7"
 
 
@@ -235,7 +319,7 @@ def test_a_reproduction_without_a_robot_is_none(store: Store) -> None:
 
 def test_what_is_not_there_is_said(reproduced: Store) -> None:
     with pytest.raises(UsageError, match="no robot 2 in session 1; they are numbered 0 to 1"):
-        content_of(reproduced, robot=2, session=1)
+        content_of(reproduced, robots=[2], session=1)
     with pytest.raises(UsageError, match=r"session 9 is no reproduction .*; there are: 1, 2"):
         content_of(reproduced, session=9)
 
@@ -285,3 +369,15 @@ def test_what_cannot_be_read_is_refused(store: Store, run: LearningRunInfo) -> N
     altered(store.path, "UPDATE learning_run SET versions = '7'")
     with pytest.raises(DatabaseError, match="learning run 1 holds"):
         gathered(store.path)
+
+
+def test_a_run_that_was_done_beside_an_interrupted_one_is_listed_alone(
+    store: Store, run: LearningRunInfo
+) -> None:
+    """An older affcli could begin it again; both are the same robot with the same tool."""
+    begun = store.learning.begin(spec_of(behaviors=400, seed=9, settings=IMPATIENT), {}, now())
+    with open_store(store.path, create=False, write=False) as again:
+        assert [one.id for one, _ in overview_of(again).learned] == [run.id, begun.id]
+    altered(store.path, f"UPDATE learning_run SET seed = 0 WHERE id = {begun.id}")
+    with open_store(store.path, create=False, write=False) as again:
+        assert [one.id for one, _ in overview_of(again).learned] == [run.id]

@@ -211,11 +211,12 @@ def test_the_page_turns_what_is_turned(page: str) -> None:
     titles = re.findall(
         r"<figcaption>([^<]+?) <span", page.split('<section id="trials"', maxsplit=1)[0]
     )
-    assert titles[:3] == [
-        "extend arm, 5 in",
-        "turn wrist, 30 deg; grasp 1",
-        "turn wrist, 30 deg; wrist at 30 deg",
+    # The paper's calls come first, those of smaller parameters before others.
+    assert titles[:4] == [
+        f"{name}, 2 in"
+        for name in ("extend arm", "contract arm", "slide arm left", "slide arm right")
     ]
+    assert titles[8:10] == ["turn wrist, 30 deg; grasp 1", "turn wrist, 30 deg; wrist at 30 deg"]
 
 
 def test_the_page_names_planners_and_what_is_not_drawn_or_done_again(page: str) -> None:

@@ -13,6 +13,7 @@ from affcli.analysis.paper import (
     TRIALS,
     papers_breaking,
 )
+from affcli.analysis.prediction import scores
 from affcli.analysis.regions import UNKNOWN, region_of
 from affcli.analysis.reproduction import Reproduction
 from affcli.analysis.statistics import ENOUGH_ROBOTS, Spread
@@ -21,6 +22,7 @@ from affcli.core.replay import Replay
 from affcli.core.specs import Protocol, TrialRecord
 from affcli.core.trial import Outcome, is_counted
 from affcli.errors import one_line
+from affcli.report.breaking import growth_words
 from affcli.report.page.content import Broken, Content, LearnedRows
 from affcli.report.page.drawings import sector
 from affcli.report.replaying import by_reason
@@ -106,6 +108,27 @@ def pulls(learned: LearnedRows) -> str:
     )
 
 
+def worth(content: Content) -> str:
+    """Return how good a table is at predicting, and what testing it found."""
+    asked = next((one for one in reversed(content.tools) if one.pushes), None)
+    said = "Its table was not asked for predictions."
+    if asked is not None:
+        name, whole = one_line(asked.run.spec.tool, 60), scores(asked.pushes)[-1]
+        said = (
+            f"Of {len(asked.pushes)} fresh pushes with the {name}, {whole.moved} moved the puck: "
+            f"its table foretold {whole.hits} of these, and wrongly {whole.false_alarms} of the "
+            f"other {whole.still}."
+        )
+    if not content.verifications:
+        return f"{said} It has not tested its table itself: affcli verify --update"
+    last = content.verifications[-1]
+    return (
+        f"{said} Testing the table of run {last.run_id} with the {one_line(last.shape, 60)} in its "
+        f"hand, the robot found: {last.verdict or 'interrupted'} ({last.failed} of {last.live} "
+        "tries failed)."
+    )
+
+
 def _of_these_excluded(rows: Sequence[Affordance]) -> str:
     """Return how many of some rows are not used any more, nothing when all are."""
     gone = sum(not is_probable(row.times_successful, row.times_used) for row in rows)
@@ -143,7 +166,8 @@ def forgot(broken: Broken) -> str:
     has_side = missing_side(learned.run.spec.held, spec.held) != 0.0
     side = f"with {missing} of these the puck lay on the side that is gone, and "
     paper = papers_breaking(spec, learned.run.spec)
-    return (
+    grew = growth_words(learned.run.spec.held, spec.held)
+    return f"{grew} ".lstrip() + (
         f"{len(dead)} of its {len(learned.rows)} rows were excluded in at least one of "
         f"{tally.trials} trials; {side if has_side else 'of these, '}{lost} are truly lost: the "
         f"{one_line(spec.shape, 60)} cannot do them. {tally.tries_on_lost} of {tally.tries} tries "

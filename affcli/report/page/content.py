@@ -1,12 +1,15 @@
 """What the page is made of."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from affcli.analysis.curves import Curve, ToolCurves
+from affcli.analysis.prediction import Push
 from affcli.analysis.reproduction import Reproduction
 from affcli.core.affordance import Affordance
-from affcli.core.records import LearningRunInfo
+from affcli.core.records import LearningRunInfo, TrialInfo
 from affcli.core.replay import Replay
+from affcli.core.results import VerificationResult
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,10 +19,18 @@ class LearnedRows:
     Args:
         run: which; its tool is drawn by its true shape.
         rows: the affordance table by the rows' numbers in the store.
+        robot: whose, in words.
+        filmed: its trials were done again.
+        pushes: fresh ones, with what the table said of each.
+        not_asked: why it was not asked what pushes do; empty if it was, or is of another robot.
     """
 
     run: LearningRunInfo
     rows: Mapping[int, Affordance]
+    robot: str = "the robot"
+    filmed: bool = True
+    pushes: Sequence[Push] = ()
+    not_asked: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,8 +54,13 @@ class Content:
         database: name of the file.
         robot: whose tools and trials these are, in words.
         reproduction: what many robots gave; None when there is none.
-        tools: what the robot learned.
+        tools: what this robot learned, and others to choose from, each in turn.
         replays: its trials, done again.
+        others: trials of the other robots, as they are stored.
+        curves: how learning went, by learning run.
+        bands: the same of all robots of the reproduction, by tool.
+        verifications: what tests of these tables found.
+        not_shown: how many robots more there are.
         not_replayed: its trials that this affcli cannot do again, each with the reason.
         left_out: trials of the same robot that are not shown.
         broken: each tool of its that broke.
@@ -60,3 +76,8 @@ class Content:
     left_out: int
     broken: Sequence[Broken]
     versions: Mapping[str, str]
+    others: Sequence[TrialInfo] = ()
+    curves: Mapping[int, Curve] = field(default_factory=dict)
+    bands: Mapping[str, ToolCurves] = field(default_factory=dict)
+    verifications: Sequence[VerificationResult] = ()
+    not_shown: int = 0

@@ -13,6 +13,8 @@ from affcli.report.words import call_title, call_words
 
 SECTORS = ("right", "away", "left", "toward")
 """Where a movement goes, by quarters of a turn: away from the robot is a push, toward it a pull."""
+GRID = 5
+"""Inches from one line of the grid to the next."""
 MARGIN = 1.6
 """Inches around the tool and all arrows."""
 
@@ -48,11 +50,13 @@ class Panel:
 
     Args:
         title: behavior, parameters, and what of the hold is not usual.
+        call: the behavior as the terminal writes it.
         parts: of the tool, as it lay around the wrist (in).
         arrows: the rows.
     """
 
     title: str
+    call: str
     parts: Sequence[ToolPart]
     arrows: Sequence[Arrow]
 
@@ -66,6 +70,22 @@ class Frame:
     width: float
     height: float
 
+    @property
+    def across(self) -> list[int]:
+        """Where lines of the grid stand on the x axis (in)."""
+        return _multiples(self.left, self.width)
+
+    @property
+    def up(self) -> list[int]:
+        """Where lines of the grid stand on the y axis (in)."""
+        return _multiples(self.bottom, self.height)
+
+
+def _multiples(first: float, size: float) -> list[int]:
+    """Return the multiples of 5 in, of more where the axis is long, that lie on an axis."""
+    apart = GRID * max(1, round(size / (8 * GRID)))
+    return list(range(math.ceil(first / apart) * apart, math.floor(first + size) + 1, apart))
+
 
 def sector(dx: float, dy: float) -> str:
     """Return where a movement goes: the one of `SECTORS` that it is nearest to."""
@@ -77,8 +97,9 @@ def panels(
     binding: BehaviorCall,
     rows: Mapping[int, Affordance],
     excluded: Mapping[int, int] | None = None,
+    calls: Sequence[BehaviorCall] = (),
 ) -> list[Panel]:
-    """Return the panels of a tool, behaviors in alphabetical order, smaller parameters first.
+    """Return the panels of a tool: smaller parameters first, then in the order of the behaviors.
 
     Args:
         tool: as it was when the rows were made, in the tool frame.
@@ -86,24 +107,34 @@ def panels(
         rows: by number.
         excluded: in how many trials a row was excluded, by number. None: those whose probability is
             1/2 or below now count as excluded.
+        calls: the behaviors; one that made no row has a panel too.
     """
-    grouped: dict[tuple[BehaviorCall, BehaviorCall, int], list[tuple[int, Affordance]]] = {}
+    order = list(
+        dict.fromkeys([*(c.name for c in calls), *(r.exploratory.name for r in rows.values())])
+    )
+    tried = {row.exploratory for row in rows.values()}
+    grouped: dict[tuple[BehaviorCall, BehaviorCall, int], list[tuple[int, Affordance]]]
+    grouped = {(call, binding, 0): [] for call in calls if call not in tried}
     for number, row in rows.items():
         turn = round(math.degrees(row.wrist_angle))
         grouped.setdefault((row.exploratory, row.binding, turn), []).append((number, row))
     made = []
-    for (call, held, turn), own in sorted(grouped.items(), key=lambda item: _place(*item[0])):
+
+    def place(panel: tuple[BehaviorCall, BehaviorCall, int]) -> tuple[object, ...]:
+        call, held, turn = panel
+        return [value for _, value in call.params], order.index(call.name), str(held), turn
+
+    for (call, held, turn), own in sorted(grouped.items(), key=lambda item: place(item[0])):
         title = [call_title(call)]
         title += [] if held == binding else [call_words(held)]
         title += [f"wrist at {turn} deg"] if turn else []
         arrows = [_arrow(tool, number, row, excluded) for number, row in own]
-        made.append(Panel("; ".join(title), parts_at(tool, held, math.radians(turn)), arrows))
+        made.append(
+            Panel(
+                "; ".join(title), call_words(call), parts_at(tool, held, math.radians(turn)), arrows
+            )
+        )
     return made
-
-
-def _place(call: BehaviorCall, binding: BehaviorCall, turn: int) -> tuple[object, ...]:
-    """Return by what panels are put in order."""
-    return (call.name, [value for _, value in call.params], str(binding), turn)
 
 
 def _arrow(tool: Tool, number: int, row: Affordance, excluded: Mapping[int, int] | None) -> Arrow:
@@ -131,6 +162,6 @@ def frame(drawn: Iterable[Panel]) -> Frame:
     return Frame(left, bottom, max(xs) + MARGIN - left, max(ys) + MARGIN - bottom)
 
 
-def points(part: ToolPart) -> str:
-    """Return a part's outline as SVG wants it, y upward (in)."""
-    return " ".join(f"{x:g},{y:g}" for x, y in part.outline.vertices)
+def outline(vertices: Iterable[tuple[float, float]]) -> str:
+    """Return corners as SVG wants them (in)."""
+    return " ".join(f"{x:g},{y:g}" for x, y in vertices)

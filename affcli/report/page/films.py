@@ -10,7 +10,8 @@ from affcli.core.specs import TrialSpec
 from affcli.core.tool import Tool, ToolPart, hold_of
 from affcli.core.workspace import Workspace
 from affcli.errors import one_line
-from affcli.report.trials import step_json
+from affcli.report.page.drawings import outline
+from affcli.report.trials import distances
 from affcli.report.words import call_words, movement_words, reason_words
 
 UNIT = 0.02
@@ -59,8 +60,8 @@ def trial_data(replay: Replay, run: LearningRunInfo, world: int) -> dict[str, An
     return {
         "id": replay.trial_id,
         "world": world,
-        **{name: one_line(text, 60) for name, text in _which(spec).items()},
-        "region": None if goal is None else _outline(goal.outline().vertices),
+        **which(spec),
+        "region": None if goal is None else outline(goal.outline().vertices),
         "outcome": "interrupted" if end is None else end.outcome.value,
         "left": None if left is None else [reason_words(reason) for reason in left],
         "equal": not replay.differences,
@@ -80,16 +81,18 @@ def trial_data(replay: Replay, run: LearningRunInfo, world: int) -> dict[str, An
     }
 
 
-def _which(spec: TrialSpec) -> dict[str, str]:
+def which(spec: TrialSpec) -> dict[str, str]:
     """Return the names that tell a trial from others."""
-    return {
+    names = {
         "tool": spec.tool,
         "shape": spec.shape,
         "planner": str(spec.planner),
         "tasks": spec.task_set,
         "goal": spec.goal,
         "start": spec.start,
+        "sensor": spec.sensor,
     }
+    return {name: one_line(text, 60) for name, text in names.items()}
 
 
 def _step(one: ReplayedStep) -> dict[str, Any]:
@@ -97,7 +100,10 @@ def _step(one: ReplayedStep) -> dict[str, Any]:
     record = one.step.record
     row = record.row
     return {
-        **step_json(one.considered[0].id, record, one.goal),
+        "reasons": [reason._asdict() for reason in record.reasons],
+        "distance_to_goal": _rounded(distances(record, one.goal)[0])[0],
+        "replicated": record.replicated,
+        "excluded": record.died,
         "frames": len(one.scenes),
         "placed": one.placed,
         "close": [_considered(each) for each in one.considered],
@@ -161,14 +167,9 @@ def _held(tool: Tool, replay: Replay, run: LearningRunInfo) -> dict[str, Any]:
         if replay.spec.held.held(hold).outlines == tool.outlines:
             missing = run.spec.held.held(hold).parts_missing_in(tool)
     return {
-        "parts": [_outline(part.outline.vertices) for part in tool.parts],
-        "missing": [_outline(part.outline.vertices) for part in missing],
+        "parts": [outline(part.outline.vertices) for part in tool.parts],
+        "missing": [outline(part.outline.vertices) for part in missing],
     }
-
-
-def _outline(vertices: Iterable[tuple[float, float]]) -> str:
-    """Return corners as SVG wants them."""
-    return " ".join(f"{x:g},{y:g}" for x, y in vertices)
 
 
 def hex_color(color: tuple[float, float, float]) -> str:

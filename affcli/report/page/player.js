@@ -43,7 +43,7 @@
   const searches = () => nested() ? NESTED : OTHER;
   const steps = (count) => `${count} step${count === 1 ? "" : "s"}`;
 
-  const svg = byId("table"), rows = [...byId("list").tBodies[0].rows]; // as the trials are in the data
+  const svg = byId("table"), rows = [...byId("list").tBodies[0].rows].filter((row) => row.matches(".filmed")); // as the trials are in the data
   let trial, world, film, way, starts, frame, timer, drawn;
 
   /** Choose a trial: unpack its film, draw what does not move, list its steps. */
@@ -127,6 +127,7 @@
   };
 
   function list() {
+    byId("count").textContent = steps(trial.steps.length);
     byId("steps").replaceChildren(...trial.steps.map((step, i) => {
       const item = html("li");
       const button = html("button");
@@ -141,6 +142,7 @@
       item.append(button);
       return item;
     }));
+    byId("steps").dispatchEvent(new Event("changed"));
   }
 
   function lit(names) {
@@ -232,7 +234,7 @@
     const others = html("table");
     others.append(html("caption", "Chosen, and what came close"));
     const top = others.createTHead().insertRow();
-    for (const name of ["row", "behavior", "wrist travels", "ends from goal", "probability"]) {
+    for (const name of ["row", "behavior", "wrist travels, in", "ends from goal, in", "proba\u00adbility"]) {
       const head = html("th", name);
       head.scope = "col";
       top.append(head);
@@ -246,7 +248,7 @@
       head.append(link, k ? "" : " (chosen)");
       head.scope = "row";
       line.append(head);
-      for (const text of [call, `${repositioning} in`, `${end} in`, probability]) line.append(html("td", text));
+      for (const text of [call, repositioning, end, probability]) line.append(html("td", text));
     });
     const nearest = step.reasons.find((reason) => reason.name === "nearest")?.rows;
     const reason = nested() && nearest

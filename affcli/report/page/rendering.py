@@ -1,7 +1,7 @@
 """The page as one file of HTML: text is escaped, and nothing is loaded from elsewhere."""
 
 from collections import Counter, defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -9,7 +9,7 @@ from markupsafe import Markup
 
 from affcli import __version__
 from affcli.analysis.breaking import missing_side
-from affcli.analysis.overview import goal_counts
+from affcli.analysis.overview import Tried, goal_counts
 from affcli.analysis.paper import (
     BROKEN_TRIALS,
     GOALS,
@@ -18,13 +18,17 @@ from affcli.analysis.paper import (
 )
 from affcli.analysis.reproduction import failures_in
 from affcli.analysis.statistics import ENOUGH_ROBOTS
+from affcli.core.replay import Replay
 from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome
 from affcli.errors import one_line
 from affcli.report.json_table import plain
-from affcli.report.page import answers, drawings, films
+from affcli.report.page import answers, charts, drawings, films
 from affcli.report.page.content import Broken, Content, LearnedRows
+from affcli.report.prediction import predictions_table
 from affcli.report.reproduction import reproduction_json
+from affcli.report.sheet import Sheet
+from affcli.report.verification import verifications_table
 from affcli.report.words import call_words, clock, in_order, run_words, unknown_shapes
 
 HOME = "affcli.report.page"
@@ -35,6 +39,8 @@ KINDS = {
     Outcome.STEP_LIMIT.value: "still trying when its steps ran out; the paper names no limit",
 }
 """How trials fail."""
+VARIED = ("robot", "tasks", "planner", "sensor")
+"""What the list of trials has a column for where it is not always the same."""
 FEW = 3
 """Tries in vain that show what adaptation is."""
 
@@ -54,25 +60,37 @@ def render(content: Content, command: str) -> str:
         keep_trailing_newline=True,
     )
     pages.filters["capitalize_first"] = lambda text: text[:1].upper() + text[1:]
-    sources = {name: _source(pages, name) for name in ("style.css", "tables.js", "player.js")}
+    sources = ("style.css", "tables.js", "saving.js", "player.js")
+    style, tables, saving, player = (_source(pages, name) for name in sources)
     worlds = list(dict.fromkeys(replay.workspace for replay in content.replays))
     runs = {learned.run.id: learned.run for learned in content.tools}
+    whose = {learned.run.id: learned.robot for learned in content.tools}
+    robots = list(dict.fromkeys(whose.values()))
     trials = [
         films.trial_data(replay, runs[replay.run_id], worlds.index(replay.workspace))
         for replay in content.replays
     ]
+    listed = _listed(content, whose)
     return pages.get_template("page.html.j2").render(
         content=content,
         version=__version__,
         command=command,
-        style=sources["style.css"],
-        tables=sources["tables.js"],
-        player=sources["player.js"],
-        points=drawings.points,
+        style=style,
+        tables=tables,
+        saving=saving,
+        player=player,
+        outline=drawings.outline,
+        open_run=[one.run.id for one in content.tools if one.filmed][-1],
+        robots=robots if len(robots) > 1 else [],
+        more_robots=more_robots(content),
         tools=[_tool_section(learned) for learned in content.tools],
         trials=trials,
-        planners=len({trial["planner"] for trial in trials}) > 1,
-        task_sets=len({trial["tasks"] for trial in trials}) > 1,
+        listed=listed,
+        # What is the same in all trials needs no column.
+        varied=[name for name in VARIED if len({str(one[name]) for one in listed}) > 1],
+        charts=charts.charts(content.tools, content.curves, content.bands),
+        sheets=_sheets(content),
+        worth=answers.worth(content),
         same=answers.same(content),
         left_out=answers.left_out(content),
         data=plain(
@@ -89,6 +107,50 @@ def render(content: Content, command: str) -> str:
         sums={"total": TRIALS, "broken": BROKEN_TRIALS},
         **_results(content),
     )
+
+
+def _listed(content: Content, whose: Mapping[int, str]) -> list[dict[str, Any]]:
+    """Return the lines of the list of trials; of those without a film, what is stored with them."""
+
+    def line(trial: Tried, number: int, steps: int | None, found: int | None) -> dict[str, Any]:
+        return {
+            **films.which(trial.spec),
+            "robot": whose[trial.run_id],
+            "id": number,
+            "filmed": found is not None,
+            "outcome": "interrupted" if trial.outcome is None else trial.outcome.value,
+            "steps": steps,
+            "replicated": found,
+        }
+
+    def again(one: Replay) -> int:
+        return sum(step.step.record.replicated for step in one.steps)
+
+    return [
+        *(line(one, one.trial_id, len(one.steps), again(one)) for one in content.replays),
+        *(line(one, one.id, one.steps, None) for one in content.others),
+    ]
+
+
+def more_robots(content: Content) -> str:
+    """Return what stands beside the choice of robots: whose films are here, how to get others."""
+    if not content.others and not content.not_shown:
+        return ""
+    option = "--run ID" if content.tools[0].run.session_id is None else "--robot N"
+    not_shown = f" {content.not_shown} more are in the database." if content.not_shown else ""
+    return (
+        f"Films are here of {content.robot}; of others affcli report --html FILE {option} makes "
+        f"them.{not_shown}"
+    )
+
+
+def _sheets(content: Content) -> list[Sheet]:
+    """Return tables on what the affordance tables are worth; none that is empty."""
+    asked = [(one.robot, one.run.spec.tool, one.pushes) for one in content.tools if one.pushes]
+    return [
+        *([predictions_table(asked)] if asked else []),
+        *([verifications_table(content.verifications)] if content.verifications else []),
+    ]
 
 
 def _printable(value: object) -> object:
@@ -137,35 +199,43 @@ def _results(content: Content) -> dict[str, Any]:
     }
 
 
-def _single(content: Content) -> tuple[list[str], list[tuple[str, list[dict[str, Any]]]]]:
-    """Return the goals, and for each row what one robot solved and tried of each of them.
+def _single(content: Content) -> tuple[list[str], list[tuple[str, str, list[dict[str, Any]]]]]:
+    """Return the goals; and for each row whose it is, and what was solved and tried of each goal.
 
     A row is a tool, and what is not the usual of planner, tasks and, where it differs, sensor.
     """
-    whole = [r for r in content.replays if r.spec.protocol is Protocol.EXTENSION_OF_REACH]
+    every: list[Tried] = [*content.replays, *content.others]
+    whole = [r for r in every if r.spec.protocol is Protocol.EXTENSION_OF_REACH]
     counts = goal_counts(whole, [learned.run for learned in content.tools])
     sensors = {one.by.sensor for one in counts}
-    rows: dict[str, dict[str, dict[str, Any]]] = defaultdict(dict)
+    whose = {learned.run.id: learned.robot for learned in content.tools}
+    rows: dict[tuple[str, int], dict[str, dict[str, Any]]] = defaultdict(dict)
     for one in counts:
         by = one.by
         name = row_name(by.tool, by.planner, by.task_set)
         if len(sensors) > 1:
             name += f", {by.sensor}"
+        if len(set(whose.values())) > 1:
+            name += f", {whose[by.run]}, run {by.run}"
         for goal, (solved, tried) in one.goals.items():
-            rows[name][goal] = {"solved": solved, "tried": tried, "paper": one.paper(goal)}
+            rows[name, by.run][goal] = {"solved": solved, "tried": tried, "paper": one.paper(goal)}
     goals = in_order(goal for cells in rows.values() for goal in cells)
     none = {"solved": 0, "tried": 0, "paper": None}
     return goals, [
-        (name, [cells.get(goal, none) for goal in goals]) for name, cells in rows.items()
+        (name, whose[run], [cells.get(goal, none) for goal in goals])
+        for (name, run), cells in rows.items()
     ]
 
 
 def _tool_section(learned: LearnedRows) -> dict[str, Any]:
     """Return what the page shows of one tool."""
     spec = learned.run.spec
-    drawn = drawings.panels(spec.held, spec.binding, learned.rows)
+    calls = [one.call for one in spec.repertoire]
+    drawn = drawings.panels(spec.held, spec.binding, learned.rows, calls=calls)
     return {
         "run": learned.run,
+        "robot": learned.robot,
+        "not_asked": learned.not_asked,
         "rows": len(learned.rows),
         "panels": drawn,
         "frame": drawings.frame(drawn),
@@ -180,9 +250,11 @@ def _tool_section(learned: LearnedRows) -> dict[str, Any]:
 def _broken_section(broken: Broken) -> dict[str, Any]:
     """Return what the page shows of a tool that broke."""
     dead, rows = answers.excluded_rows(broken), broken.learned.rows
-    spec, left = broken.learned.run.spec, broken.trials[0].spec.held
+    spec, trial = broken.learned.run.spec, broken.trials[0].spec
+    left = trial.held
     gone = {number: row.trials for number, row in dead.items()}
-    drawn = drawings.panels(spec.held, spec.binding, rows, gone)
+    calls = [one.call for one in spec.repertoire]
+    drawn = drawings.panels(spec.held, spec.binding, rows, gone, calls)
     table: dict[str, list[int]] = defaultdict(lambda: [0, 0, 0, 0])
     for number, row in rows.items():
         one = dead.get(number)
@@ -193,7 +265,9 @@ def _broken_section(broken: Broken) -> dict[str, Any]:
     return {
         "answer": answers.forgot(broken),
         "tool": spec.held,
+        "robot": broken.learned.robot,
         "shape": left,
+        "by": row_name("", str(trial.planner), trial.task_set),
         "side": missing_side(spec.held, left) != 0.0,
         "panels": drawn,
         "frame": drawings.frame(drawn),

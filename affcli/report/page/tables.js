@@ -28,6 +28,47 @@
       for (const arrow of document.querySelectorAll("#tools .arrow"))
         arrow.classList.toggle("dim", radio.value !== "all" && !arrow.classList.contains(radio.value));
     });
+  /** A long list is folded, says so, and can be unfolded. */
+  const fold = (list) => {
+    const said = document.createElement("p"), button = document.createElement("button"), words = document.createTextNode("");
+    const count = () => list.matches("ol") ? list.children.length : [...list.querySelectorAll("tbody tr")].filter((row) => !row.hidden).length;
+    said.className = "more";
+    button.type = "button";
+    said.append(words, button);
+    list.after(said);
+    const look = () => {
+      list.classList.remove("folded");
+      said.hidden = list.scrollHeight < 30 * parseFloat(getComputedStyle(document.body).fontSize);
+      list.classList.toggle("folded", !said.hidden && !list.unfolded);
+      if (list.matches("ol")) list.tabIndex = list.matches(".folded") ? 0 : -1;
+      words.textContent = list.unfolded ? "" : `${count()} in this list, which scrolls. `;
+      button.textContent = list.unfolded ? "Show fewer" : `Show all ${count()}`;
+    };
+    button.addEventListener("click", () => { list.unfolded = !list.unfolded; look(); });
+    list.addEventListener("changed", look);
+    addEventListener("resize", look);
+    look();
+  };
+  document.querySelectorAll(".tall").forEach(fold);
+  /** One robot alone, or all of them. */
+  const whose = document.getElementById("whose");
+  const only = () => {
+    for (const one of document.querySelectorAll("[data-robot]"))
+      if (one instanceof SVGElement) one.style.opacity = whose.value && one.dataset.robot !== whose.value ? 0.12 : "";
+      else one.hidden = Boolean(whose.value) && one.dataset.robot !== whose.value;
+    for (const list of document.querySelectorAll(".tall")) list.dispatchEvent(new Event("changed"));
+  };
+  whose?.addEventListener("change", only);
+  if (whose) only();
+  /** What an arrow is, where the pointer rests on it. */
+  for (const arrow of document.querySelectorAll(".arrow")) {
+    const { part, used, row, trials } = arrow.dataset;
+    const title = document.createElementNS(arrow.namespaceURI, "title");
+    const sector = ["toward", "away", "left", "right"].find((name) => arrow.classList.contains(name));
+    title.textContent = `row ${row ?? arrow.id.slice(4)}: puck nearest to the ${part}, moved ${sector}; ${used ?? "1/1"}` +
+      (trials ? `; excluded in ${trials} trial${trials === "1" ? "" : "s"}` : "");
+    arrow.append(title);
+  }
   /** Paper has nothing to unfold; what was closed is closed again afterwards. */
   let unfolded = [];
   addEventListener("beforeprint", () => {
