@@ -1,7 +1,8 @@
 """Commands run by somebody who may not write: ``python -m tests.cli.unprivileged '[[...], ...]'``.
 
-Root may write everywhere, so what is imported late is imported first, then root is given up. For
-each command a line of JSON says how it ended: exit code, stdout, stderr.
+Root may write everywhere, so root is given up; what is imported late is imported first, for on some
+systems the code cannot be read after that. For each command a line of JSON says how it ended: exit
+code, stdout, stderr.
 """
 
 import json
@@ -11,8 +12,7 @@ import tempfile
 from pathlib import Path
 
 from tests.cli.warm import import_everything, run, warm_up
-
-NOBODY = 65534
+from tests.permissions import give_up_root
 
 
 def run_all(commands: list[list[str]]) -> None:
@@ -34,7 +34,5 @@ if __name__ == "__main__":
     wanted = json.loads(sys.argv[1])
     import_everything()
     warm_up()
-    if os.getuid() == 0:
-        os.setgid(NOBODY)
-        os.setuid(NOBODY)
+    give_up_root()
     run_all(wanted)

@@ -17,6 +17,7 @@ from affcli.core.identity import Component
 from affcli.core.specs import SessionSpec
 from affcli.errors import DatabaseError
 from affcli.store import Store, open_store, run_sql, upgrade
+from tests.permissions import give_up_root
 
 
 def write_something(store: Store) -> None:
@@ -116,9 +117,7 @@ def without_permission(path: Path) -> None:
     with open_store(path / "warm.db", create=True, write=True):
         pass
     run_sql(path / "warm.db", "select 1")
-    if os.getuid() == 0:
-        os.setgid(65534)
-        os.setuid(65534)
+    give_up_root()
     for folder in path.glob("*/"):
         for what in (reading, querying, writing, writing_anew):
             try:
