@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from affcli.cli.database import opened
+from affcli.cli.options import waited_for
 from affcli.cli.terminal import show_text
 from affcli.core.records import LearningRunInfo, SessionInfo
 from affcli.report.citation import bibtex
@@ -21,6 +22,7 @@ def cite(
             help="Say what the results in this SQLite file were made with.",
             metavar="FILE",
             readable=False,
+            callback=waited_for,
         ),
     ] = None,
 ) -> None:

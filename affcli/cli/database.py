@@ -27,7 +27,6 @@ def opened(
     Raises:
         DatabaseError: it cannot be opened, or is none of ours.
     """
-    store.tell_of_waiting(say)
     return store.open_store(database, create=create, write=write)
 
 

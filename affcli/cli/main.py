@@ -14,6 +14,8 @@ OBJECTS_BETWEEN_COLLECTIONS = 100_000
 that run for hours; importing the libraries would be searched three hundred times, which is a tenth
 of the time of `affcli learn`."""
 
+OUT_OF_MEMORY = "memory ran out; what was saved is kept; ask for less, or leave more memory free"
+
 
 def main() -> int:
     """Run the program and return its exit code.
@@ -45,8 +47,17 @@ def main() -> int:
             return _fail(f"stopped; what was saved is kept{again}", 128 + handler.signum)
         if isinstance(error, AffcliError):
             return _fail(str(error), error.exit_code)
+        if _ran_out_of_memory(error):
+            return _fail(OUT_OF_MEMORY, BadInputError.exit_code)
         raise
     return code
+
+
+def _ran_out_of_memory(error: BaseException | None) -> bool:
+    """Tell whether memory ran out, or did and made something else go wrong."""
+    while error is not None and not isinstance(error, MemoryError):
+        error = error.__context__
+    return error is not None
 
 
 def _fail(message: str, code: int) -> int:

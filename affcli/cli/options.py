@@ -13,7 +13,8 @@ from typing import Annotated, Any
 
 import typer
 
-from affcli import registry
+from affcli import registry, store
+from affcli.cli.terminal import say
 from affcli.core.identity import Component
 from affcli.core.limits import LARGEST_SEED, LONGEST_HOURS, LONGEST_NOTE
 from affcli.core.names import one_of
@@ -126,11 +127,22 @@ def names_of(kind: Kind) -> Callable[[str], list[str]]:
     return lambda incomplete: [n for n in registry.parts(kind) if n.startswith(incomplete)]
 
 
+def waited_for(database: Path | None) -> Path | None:
+    """Return the database; a command that will have to wait for it says so from now on."""
+    store.tell_of_waiting(say)
+    return database
+
+
 # readable=False: whether a file can be read is for those to say who read it, with their exit code.
 Database = Annotated[
     Path,
     typer.Option(
-        "--db", envvar="AFFCLI_DB", help="The SQLite file.", metavar="FILE", readable=False
+        "--db",
+        envvar="AFFCLI_DB",
+        help="The SQLite file.",
+        metavar="FILE",
+        readable=False,
+        callback=waited_for,
     ),
 ]
 DEFAULT_DATABASE = Path("affcli.db")

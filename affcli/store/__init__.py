@@ -11,10 +11,10 @@ if TYPE_CHECKING:
     from affcli.store.copying import backup
     from affcli.store.environment import Fact, State, environment_facts
     from affcli.store.health import DatabaseInfo, Finding, check, database_info
-    from affcli.store.lock_retry import tell_of_waiting
     from affcli.store.opening import Store, open_store, upgrade
     from affcli.store.packing import PackedRobot, pack_robot
     from affcli.store.query import QueryResult, run_sql
+    from affcli.store.waiting import tell_of_waiting
 
 __all__ = [
     "DatabaseInfo",
@@ -37,7 +37,7 @@ __all__ = [
 
 _HOMES = {
     "copying": ("backup",),
-    "lock_retry": ("tell_of_waiting",),
+    "waiting": ("tell_of_waiting",),
     "environment": ("Fact", "State", "environment_facts"),
     "health": ("DatabaseInfo", "Finding", "check", "database_info"),
     "opening": ("Store", "open_store", "upgrade"),

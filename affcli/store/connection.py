@@ -13,7 +13,7 @@ from sqlalchemy.dialects import sqlite
 from affcli.errors import DatabaseError, UsageError, one_line
 from affcli.store.columns import COLUMNS, JSON_COLUMNS
 from affcli.store.faults import faults_named
-from affcli.store.lock_retry import retried
+from affcli.store.waiting import Waiting
 
 LARGEST = 1e9
 """No length, angle or time of this laboratory is larger; ten thousand hours are 3.6e7 s."""
@@ -24,18 +24,17 @@ class Database:
 
     Args:
         connection: SQLAlchemy's, around `driver`.
-        driver: the sqlite3 connection, in autocommit: BEGIN and COMMIT are said here alone.
-        path: the database file.
-        timeout: seconds to wait for a lock.
+        driver: the connection of sqlite3: BEGIN and COMMIT are said here alone.
     """
 
-    def __init__(
-        self, connection: sa.Connection, driver: sqlite3.Connection, path: Path, timeout: float
-    ) -> None:
-        self.path = path
+    def __init__(self, connection: sa.Connection, driver: Waiting) -> None:
         self._connection = connection
         self._driver = driver
-        self._timeout = timeout
+
+    @property
+    def path(self) -> Path:
+        """The file."""
+        return self._driver.path
 
     @contextmanager
     def reading(self) -> Iterator[sa.Connection]:
@@ -80,7 +79,7 @@ class Database:
         if self._is_within():
             yield self._connection
             return
-        with faults_named(self.path, self._timeout):
+        with faults_named(self.path):
             try:
                 self._say(begin)
                 yield self._connection
@@ -97,11 +96,9 @@ class Database:
         return self._driver.in_transaction
 
     def _say(self, statement: str) -> None:
-        """Execute a statement that may have to wait for a lock."""
+        """Execute a statement."""
         # Through SQLAlchemy, so that Alembic sees that a transaction has begun and begins none.
-        retried(
-            lambda: self._connection.exec_driver_sql(statement).close(), self._timeout, self.path
-        )
+        self._connection.exec_driver_sql(statement).close()
 
 
 def insert_many(

@@ -7,10 +7,16 @@ from itertools import count
 from pathlib import Path
 
 from affcli.errors import DatabaseError, one_line
-from affcli.store.database_file import look, opened, require_place, require_something
+from affcli.store.database_file import (
+    look,
+    one_state,
+    opened,
+    require_place,
+    require_something,
+)
 from affcli.store.faults import faults_named
-from affcli.store.lock_retry import LONGEST_WAIT, retried
 from affcli.store.replacing import replacing
+from affcli.store.waiting import LONGEST_WAIT, Waiting
 
 
 def backup(path: Path, copy: Path, *, timeout: float = LONGEST_WAIT) -> None:
@@ -29,18 +35,19 @@ def backup(path: Path, copy: Path, *, timeout: float = LONGEST_WAIT) -> None:
     """
     require_place(path, create=False, write=False)
     with opened(path, "rw", timeout) as driver:
-        require_something(look(driver, path, timeout), path)
-        copy_of(driver, path, copy, timeout)
+        require_something(look(driver), path)
+        copy_of(driver, copy)
 
 
-def copy_of(driver: sqlite3.Connection, path: Path, copy: Path, timeout: float) -> None:
+def copy_of(driver: Waiting, copy: Path) -> None:
     """Write a copy of an opened database; see `backup`."""
+    path = driver.path
     if copy.exists() and path.samefile(copy):
         raise DatabaseError(f"{one_line(copy)}: that is the database itself; name another file")
     try:
         # Who may not read the database must not read its copy.
         with replacing(copy, path.stat().st_mode & 0o777) as part:
-            _fill(part, driver, path, copy, timeout)
+            _fill(part, driver, copy)
         _synced(Path(os.path.realpath(copy)).parent)
     except OSError as error:
         raise DatabaseError(
@@ -48,17 +55,18 @@ def copy_of(driver: sqlite3.Connection, path: Path, copy: Path, timeout: float) 
         ) from error
 
 
-def _fill(part: Path, driver: sqlite3.Connection, path: Path, copy: Path, timeout: float) -> None:
+def _fill(part: Path, driver: Waiting, copy: Path) -> None:
     """Write a checked copy of an opened database into an empty file."""
-    with faults_named(copy, timeout), closing(sqlite3.connect(part)) as target:
-        # All pages in one step, under one read lock: the database at one moment.
-        retried(lambda: driver.backup(target, pages=-1), timeout, path)
+    with faults_named(copy), closing(sqlite3.connect(part)) as target:
+        # By itself a backup would wait for a lock without end, and hear no signal.
+        with one_state(driver):
+            driver.backup(target)
         # A copy of a WAL database would need two more files beside it.
         target.execute("PRAGMA journal_mode = delete")
         verdict = target.execute("PRAGMA integrity_check(1)").fetchone()[0]
     if verdict != "ok":
         raise DatabaseError(
-            f"{one_line(path)}: damaged ({one_line(verdict)}), so no copy was made; restore an "
+            f"{one_line(driver.path)}: damaged ({one_line(verdict)}), so no copy was made; restore an "
             "older one"
         )
     _synced(part)

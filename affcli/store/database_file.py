@@ -13,7 +13,7 @@ from pathlib import Path
 from affcli.errors import DatabaseError, one_line
 from affcli.store.columns import COLUMNS
 from affcli.store.faults import REMEDIES, faults_named
-from affcli.store.lock_retry import ATTEMPT, retried
+from affcli.store.waiting import Waiting, connected
 
 APPLICATION_ID = int.from_bytes(b"affc", "big")
 """``PRAGMA application_id`` of affcli's databases."""
@@ -65,31 +65,24 @@ def require_place(path: Path, *, create: bool, write: bool) -> None:
 
 
 @contextmanager
-def opened(path: Path, mode: str, timeout: float) -> Iterator[sqlite3.Connection]:
-    """Open a SQLite file, the driver in autocommit.
+def opened(path: Path, mode: str, timeout: float) -> Iterator[Waiting]:
+    """Open a SQLite file.
 
     Args:
         path: the file.
         mode: of SQLite's URIs: ``ro``, ``rw`` or ``rwc``.
-        timeout: seconds named in an error about a lock.
+        timeout: seconds to wait for a lock.
     """
-    with faults_named(path, timeout):
-        driver = _connected(path, mode)
-        if mode != "rwc" and _lacks_shared_memory(driver, path):
+    with faults_named(path):
+        driver = connected(path, mode, timeout)
+        if mode != "rwc" and _lacks_shared_memory(driver):
             driver.close()
-            driver = _connected(path, "ro&immutable=1")
+            driver = connected(path, "ro&immutable=1", timeout)
     with closing(driver):
         yield driver
 
 
-def _connected(path: Path, mode: str) -> sqlite3.Connection:
-    """Return a connection to a file by URI mode."""
-    # as_uri quotes what a URI would read as its own: ? # %
-    uri = f"{path.absolute().as_uri()}?mode={mode}"
-    return sqlite3.connect(uri, uri=True, timeout=ATTEMPT, isolation_level=None)
-
-
-def _lacks_shared_memory(driver: sqlite3.Connection, path: Path) -> bool:
+def _lacks_shared_memory(driver: Waiting) -> bool:
     """Tell whether this is a WAL database at rest in a folder that cannot be written.
 
     SQLite cannot make the file there that it shares with other processes; the database can still be
@@ -99,44 +92,42 @@ def _lacks_shared_memory(driver: sqlite3.Connection, path: Path) -> bool:
         driver.execute("SELECT 1 FROM sqlite_master")
     except sqlite3.OperationalError as error:
         cannot = (sqlite3.SQLITE_READONLY_DIRECTORY, sqlite3.SQLITE_CANTOPEN)
-        return error.sqlite_errorcode in cannot and not Path(f"{path}-wal").exists()
+        return error.sqlite_errorcode in cannot and not Path(f"{driver.path}-wal").exists()
     except sqlite3.DatabaseError:
         pass  # `look` says what it is
     return False
 
 
 @contextmanager
-def one_state(driver: sqlite3.Connection, path: Path, timeout: float) -> Iterator[None]:
+def one_state(driver: Waiting) -> Iterator[None]:
     """Let everything that is read in a ``with`` block be of one state of an opened file.
 
     Raises:
-        DatabaseError: not a database, damaged, locked for longer than `timeout` seconds.
+        DatabaseError: not a database, damaged, locked too long.
     """
-    with faults_named(path, timeout):
+    with faults_named(driver.path):
         driver.execute("BEGIN")
         try:
             # BEGIN takes no lock; the first read does.
-            retried(lambda: driver.execute("SELECT 1 FROM sqlite_master"), timeout, path)
+            driver.execute("SELECT 1 FROM sqlite_master")
             yield
         finally:
             if driver.in_transaction:
                 driver.execute("ROLLBACK")
 
 
-def look(driver: sqlite3.Connection, path: Path, timeout: float) -> str | None:
+def look(driver: Waiting) -> str | None:
     """Return the revision of an opened file, None when it is empty, after checking it is sound.
 
     Args:
         driver: the opened file; no transaction is open.
-        path: where it is, for the message.
-        timeout: seconds to wait for a lock.
 
     Raises:
         DatabaseError: not a database, another program's, damaged, locked too long.
     """
-    with one_state(driver, path, timeout):
-        revision = stored_revision(driver, path)
-        _require_sound(driver, path)
+    with one_state(driver):
+        revision = stored_revision(driver)
+        _require_sound(driver)
         return revision
 
 
@@ -153,8 +144,9 @@ def require_something(revision: str | None, path: Path) -> str:
     return revision
 
 
-def _require_sound(driver: sqlite3.Connection, path: Path) -> None:
+def _require_sound(driver: Waiting) -> None:
     """Refuse a file that was cut off, or whose pages contradict one another."""
+    path = driver.path
     size = path.stat().st_size
     pages, page = (driver.execute(f"PRAGMA page_{k}").fetchone()[0] for k in ("count", "size"))
     if size and not pages:  # SQLite takes a few bytes for an empty file and would overwrite them
@@ -167,7 +159,7 @@ def _require_sound(driver: sqlite3.Connection, path: Path) -> None:
         raise DatabaseError(f"{one_line(path)}: {REMEDIES[sqlite3.SQLITE_CORRUPT]}")
 
 
-def stored_revision(connection: sqlite3.Connection, path: Path) -> str | None:
+def stored_revision(driver: Waiting) -> str | None:
     """Return the schema revision a database stands at; None when nothing is in it.
 
     A plain SELECT: importing Alembic to ask costs a quarter of a second.
@@ -175,8 +167,9 @@ def stored_revision(connection: sqlite3.Connection, path: Path) -> str | None:
     Raises:
         DatabaseError: another program's file, or one of affcli's that lost its revision.
     """
-    application_id = connection.execute("PRAGMA application_id").fetchone()[0]
-    names = {name for (name,) in connection.execute("SELECT name FROM sqlite_master")}
+    path = driver.path
+    application_id = driver.execute("PRAGMA application_id").fetchone()[0]
+    names = {name for (name,) in driver.execute("SELECT name FROM sqlite_master")}
     if application_id == 0 and not names:
         return None
     if application_id != APPLICATION_ID:
@@ -185,7 +178,7 @@ def stored_revision(connection: sqlite3.Connection, path: Path) -> str | None:
         )
     missing = "alembic_version"
     if missing in names:
-        revisions = connection.execute("SELECT * FROM alembic_version").fetchall()
+        revisions = driver.execute("SELECT * FROM alembic_version").fetchall()
         if len(revisions) == 1:
             revision = str(revisions[0][0])
             missing = min(RELATIONS - names, default="") if revision == REVISION else ""

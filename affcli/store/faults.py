@@ -1,17 +1,12 @@
 """What can go wrong with a database through no bug, as one line that says what to do."""
 
-import os
 import sqlite3
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 from affcli.errors import DatabaseError, one_line
-
-BUSY = frozenset({sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_PROTOCOL})
-
-PRIMARY = 0xFF
-"""The bits of a result code that say the kind; the others say more exactly what happened."""
+from affcli.store.waiting import PRIMARY
 
 INTERRUPTED_WRITE = (
     "was left in the middle of a write and you may not set it right; let somebody open it who may "
@@ -60,28 +55,13 @@ def result_code(error: BaseException) -> int:
     return int(getattr(cause, "sqlite_errorcode", 0))
 
 
-def is_busy(error: BaseException) -> bool:
-    """Tell whether an error says that another process holds a lock."""
-    return result_code(error) & PRIMARY in BUSY
-
-
 @contextmanager
-def faults_named(path: Path, waited: float) -> Iterator[None]:
-    """Turn what SQLite reports about the file, the disk or another process into a DatabaseError.
-
-    Args:
-        path: the database.
-        waited: seconds after which a lock is given up, for the message.
-    """
+def faults_named(path: Path) -> Iterator[None]:
+    """Turn what SQLite reports about a file or the disk into a DatabaseError."""
     try:
         yield
     except Exception as error:
         code, said = result_code(error), str(getattr(error, "orig", error))
-        if is_busy(error):
-            raise DatabaseError(
-                f"{one_line(path)}: locked for more than {waited:g} s by {lock_holder(path)}; "
-                "wait until it is done, then run the command again"
-            ) from error
         if said.startswith(NO_TEXT):
             raise DatabaseError(
                 f"{one_line(path)}: holds text that is none and that affcli did not write; restore "
@@ -97,22 +77,3 @@ def faults_named(path: Path, waited: float) -> Iterator[None]:
         if remedy is not None:
             raise DatabaseError(f"{one_line(path)}: {remedy}") from error
         raise
-
-
-def lock_holder(path: Path) -> str:
-    """Name the process that holds a lock on the file, where the system tells (Linux)."""
-    inodes = set()
-    for name in (path, Path(f"{path}-shm")):
-        with suppress(OSError):
-            inodes.add(name.stat().st_ino)
-    holders: dict[str, str] = {}
-    with suppress(OSError, ValueError):
-        for line in Path("/proc/locks").read_text().splitlines():
-            _, kind, _, access, pid, place, *_ = line.split()
-            # 0 is a process of another container.
-            ours = kind == "POSIX" and int(place.split(":")[2]) in inodes
-            if ours and int(pid) not in (0, os.getpid()):
-                holders[access] = f"process {pid}"
-    # Without a writer it is a reader who keeps a transaction from being committed.
-    holder = holders.get("WRITE") or holders.get("READ") or "another process"
-    return f"{holder}, probably another affcli"

@@ -13,7 +13,7 @@ from affcli.store.database_file import (
     require_place,
     require_something,
 )
-from affcli.store.lock_retry import LONGEST_WAIT
+from affcli.store.waiting import LONGEST_WAIT
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,8 +77,8 @@ def check(path: Path, *, timeout: float = LONGEST_WAIT) -> tuple[Finding, ...]:
     """
     require_place(path, create=False, write=False)
     with opened(path, "rw", timeout) as driver:
-        require_current(require_something(look(driver, path, timeout), path), path)
-        with one_state(driver, path, timeout):
+        require_current(require_something(look(driver), path), path)
+        with one_state(driver):
             pages = [row[0] for row in driver.execute("PRAGMA integrity_check") if row[0] != "ok"]
             lost = driver.execute("PRAGMA foreign_key_check").fetchall()
             found = [
@@ -140,8 +140,8 @@ def database_info(path: Path, *, timeout: float = LONGEST_WAIT) -> DatabaseInfo:
     """
     require_place(path, create=False, write=False)
     with opened(path, "rw", timeout) as driver:
-        revision = require_something(look(driver, path, timeout), path)
-        with one_state(driver, path, timeout):
+        revision = require_something(look(driver), path)
+        with one_state(driver):
             known = revision == REVISION
             return DatabaseInfo(
                 path=path,

@@ -4,6 +4,8 @@ import sqlite3
 from contextlib import suppress
 from typing import Literal
 
+from affcli.store.waiting import Waiting
+
 Version = tuple[int, int, int]
 
 WAL_MENDED: tuple[tuple[Version, Version], ...] = (
@@ -19,7 +21,7 @@ def journal_mode_for(version: tuple[int, ...]) -> Literal["wal", "delete"]:
     return "wal" if any(low <= version < high for low, high in WAL_MENDED) else "delete"
 
 
-def set_journal_mode(driver: sqlite3.Connection) -> None:
+def set_journal_mode(driver: Waiting) -> None:
     """Put the database into the journal mode that suits the linked SQLite.
 
     It needs the file to itself; while another process uses it the mode stays, until the next time.
@@ -27,4 +29,5 @@ def set_journal_mode(driver: sqlite3.Connection) -> None:
     wanted = journal_mode_for(sqlite3.sqlite_version_info)
     if driver.execute("PRAGMA journal_mode").fetchone()[0] != wanted:
         with suppress(sqlite3.OperationalError):
-            driver.execute(f"PRAGMA journal_mode = {wanted}")
+            # One that does not wait.
+            driver.cursor(sqlite3.Cursor).execute(f"PRAGMA journal_mode = {wanted}")

@@ -20,10 +20,9 @@ from affcli.store.database_file import (
     require_something,
     stored_revision,
 )
-from affcli.store.faults import PRIMARY, faults_named, result_code
+from affcli.store.faults import faults_named, result_code
 from affcli.store.journal import set_journal_mode
 from affcli.store.learning import Learning
-from affcli.store.lock_retry import LONGEST_WAIT, retried
 from affcli.store.migrate import run_migrations
 from affcli.store.results import Results
 from affcli.store.runs import Runs
@@ -31,6 +30,7 @@ from affcli.store.selections import Selections
 from affcli.store.sessions import Sessions
 from affcli.store.trials import Trials
 from affcli.store.verifications import Verifications
+from affcli.store.waiting import LONGEST_WAIT, PRIMARY, Waiting
 
 OF_THE_STATEMENT = frozenset({sqlite3.SQLITE_ERROR, sqlite3.SQLITE_CONSTRAINT})
 """Result codes by which a migration says that it does not fit what it found."""
@@ -96,18 +96,18 @@ def open_store(
     """
     require_place(path, create=create, write=write or create)
     with opened(path, "rwc" if create else "rw", timeout) as driver:
-        revision = look(driver, path, timeout)
+        revision = look(driver)
         if revision is not None or not create:
             require_current(require_something(revision, path), path)
-        with _connected(driver, path, timeout) as database:
+        with _connected(driver) as database:
             if revision is None:
                 _migrate(database, driver)
-            with faults_named(path, timeout):
-                retried(lambda: driver.execute("PRAGMA foreign_keys = ON"), timeout, path)
+            with faults_named(path):
+                driver.execute("PRAGMA foreign_keys = ON")
                 if write or create:
-                    retried(lambda: set_journal_mode(driver), timeout, path)
+                    set_journal_mode(driver)
                 else:
-                    retried(lambda: driver.execute("PRAGMA query_only = ON"), timeout, path)
+                    driver.execute("PRAGMA query_only = ON")
             yield Store(database)
 
 
@@ -135,9 +135,9 @@ def upgrade(
     """
     require_place(path, create=False, write=True)
     with opened(path, "rw", timeout) as driver:
-        before = require_something(look(driver, path, timeout), path)
+        before = require_something(look(driver), path)
         if is_older(before):
-            with _connected(driver, path, timeout) as database:
+            with _connected(driver) as database:
                 _migrate(database, driver, copied)
         else:
             require_current(before, path)
@@ -145,23 +145,23 @@ def upgrade(
 
 
 @contextmanager
-def _connected(driver: sqlite3.Connection, path: Path, timeout: float) -> Iterator[Database]:
+def _connected(driver: Waiting) -> Iterator[Database]:
     """Give a database whose one connection is `driver`; a commit returns when it is on the disk."""
-    with faults_named(path, timeout):
+    with faults_named(driver.path):
         # FULL would leave out the folder: after a power cut the journal could be there again, and
         # would take back what was said to be saved.
-        retried(lambda: driver.execute("PRAGMA synchronous = EXTRA"), timeout, path)
+        driver.execute("PRAGMA synchronous = EXTRA")
     # Transactions are ended where they are begun, so nothing is left to reset: and after ctrl-C the
     # driver may be closed already.
     engine = sa.create_engine(
         "sqlite://", creator=lambda: driver, poolclass=sa.StaticPool, pool_reset_on_return=None
     )
     with engine.connect() as connection:
-        yield Database(connection, driver, path, timeout)
+        yield Database(connection, driver)
 
 
 def _migrate(
-    database: Database, driver: sqlite3.Connection, copied: Callable[[Path], None] | None = None
+    database: Database, driver: Waiting, copied: Callable[[Path], None] | None = None
 ) -> None:
     """Run the migrations that are missing, unless another process has just done so.
 
@@ -170,7 +170,7 @@ def _migrate(
     """
     path = database.path
     with database.writing() as connection:
-        revision = stored_revision(driver, path)
+        revision = stored_revision(driver)
         if revision is None:
             run_migrations(connection)
         elif is_older(revision):
@@ -188,7 +188,7 @@ def _copy_before(revision: str, path: Path) -> Path:
     copy = backup_name(path, revision)
     # Through a connection of its own: SQLite copies nothing from one that is about to write.
     with opened(path, "rw", LONGEST_WAIT) as reader:
-        copy_of(reader, path, copy, LONGEST_WAIT)
+        copy_of(reader, copy)
     return copy
 
 

@@ -2,6 +2,8 @@
 
 import sqlite3
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
@@ -10,13 +12,14 @@ from affcli.core.row_filter import Cell
 from affcli.errors import BadInputError, one_line
 from affcli.store.database_file import (
     look,
+    one_state,
     opened,
     require_current,
     require_place,
     require_something,
 )
-from affcli.store.faults import PRIMARY, faults_named, result_code
-from affcli.store.lock_retry import LONGEST_WAIT, retried
+from affcli.store.faults import result_code
+from affcli.store.waiting import LONGEST_WAIT, PRIMARY, Waiting
 
 MAX_ROWS = 10_000
 MAX_SECONDS = 2.0
@@ -100,20 +103,24 @@ def run_sql(
     require_place(path, create=False, write=False)
     with opened(path, "rw", timeout) as driver:
         # Not yet read-only: after a kill the file must first be set right from its journal.
-        require_current(require_something(look(driver, path, timeout), path), path)
-    with opened(path, "ro", timeout) as driver, faults_named(path, timeout):
-        _confine(driver)
-        return retried(lambda: _run(driver, text, max_seconds, max_rows), timeout, path)
+        require_current(require_something(look(driver), path), path)
+    with opened(path, "ro", timeout) as driver, one_state(driver), _confined(driver):
+        return _run(driver, text, max_seconds, max_rows)
 
 
-def _confine(driver: sqlite3.Connection) -> None:
-    """Let the connection do nothing but read values of a limited size."""
+@contextmanager
+def _confined(driver: Waiting) -> Iterator[None]:
+    """Let the connection do nothing in a ``with`` block but read values of a limited size."""
     driver.execute("PRAGMA query_only = ON")
     driver.execute("PRAGMA trusted_schema = OFF")
     for limit, value in LIMITS.items():
         driver.setlimit(limit, value)
     driver.text_factory = lambda raw: raw.decode("utf-8", "replace")
     driver.set_authorizer(_judge)
+    try:
+        yield
+    finally:
+        driver.set_authorizer(None)
 
 
 def _judge(action: int, _: str | None, function: str | None, *__: str | None) -> int:
@@ -125,7 +132,7 @@ def _judge(action: int, _: str | None, function: str | None, *__: str | None) ->
     return sqlite3.SQLITE_OK
 
 
-def _run(driver: sqlite3.Connection, text: str, max_seconds: float, max_rows: int) -> QueryResult:
+def _run(driver: Waiting, text: str, max_seconds: float, max_rows: int) -> QueryResult:
     """Run the statement until it ends, or time, rows or bytes are used up."""
     deadline = time.monotonic() + max_seconds
     driver.set_progress_handler(lambda: time.monotonic() > deadline, OPCODES_BETWEEN_LOOKS)

@@ -11,7 +11,7 @@ from threading import Event, Thread
 import pytest
 
 from affcli.simulation.tools.paper import TOOL_PARTS
-from affcli.store.lock_retry import LONGEST_WAIT as STORE_PATIENCE
+from affcli.store.waiting import LONGEST_WAIT as STORE_PATIENCE
 from tests.cli.program import (
     Contents,
     contents,

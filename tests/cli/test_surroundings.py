@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.program import ROOT, Ended, environment, names_in
+from tests.cli.program import ROOT, Ended, environment, names_in, refused
 
 NOWHERE = """
 import sys, tempfile
@@ -55,3 +55,19 @@ def test_a_cache_that_cannot_be_made_is_not_spoken_of(tmp_path: Path) -> None:
     assert ended == said(tmp_path)
     assert (tmp_path / "a.pdf").read_bytes().startswith(b"%PDF")
     assert names_in(tmp_path) == ["a.pdf"]
+
+
+@pytest.mark.parametrize("error", [MemoryError(), ValueError("what came of it")], ids=repr)
+def test_too_little_memory_is_one_line(
+    error: Exception, empty: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def ask(*_: object, **__: object) -> None:
+        try:
+            raise MemoryError
+        except MemoryError:
+            raise error  # noqa: B904  # as libraries do while they close what is open
+
+    monkeypatch.setattr("affcli.store.health.one_state", ask)
+    assert "memory ran out; what was saved is kept; ask for less" in refused(
+        4, "db", "info", "--db", empty
+    )

@@ -12,7 +12,7 @@ from affcli.errors import DatabaseError
 from affcli.store import check, database_info, open_store, run_sql, upgrade
 from affcli.store.database_file import REVISION
 from affcli.store.journal import journal_mode_for
-from affcli.store.lock_retry import ATTEMPT
+from affcli.store.waiting import ATTEMPT
 from tests.store.records import learned
 
 
