@@ -37,6 +37,9 @@ EXTEND_5 = BehaviorCall.of(EXTEND_ARM, {"offset_distance": 5.0})
 EXACT = settings_with({"sensor": {"position_noise": 0, "color_noise": 0}}, "a test")
 """A sensor without noise."""
 
+UNITS = {"", "in", "in/s", "in/s^2", "s", "kg", "degrees", "of 255", "mm", "1/mm^2", "px"}
+"""In which settings and parameters are told; empty for a count or a share."""
+
 EIGHTH = 0.125
 eighths = st.integers(-320, 320).map(lambda n: n * EIGHTH)
 """Lengths up to 40 in on a binary grid: sums, differences and squares of them are exact, so that a

@@ -18,6 +18,7 @@ from affcli.config import (
 )
 from affcli.core.observation import SENSOR_KINDS
 from affcli.errors import BadInputError
+from tests.factories import UNITS
 
 
 def values_of(settings: Settings) -> dict[str, dict[str, Any]]:
@@ -371,6 +372,8 @@ def test_each_setting_says_what_it_is_and_its_default_is_possible() -> None:
     assert set(known_settings()) == {f"{section}.{key}" for section, key in KEYS}
     for name, one in known_settings().items():
         assert one.meaning.endswith("."), name
+        assert one.unit in UNITS, name
+        assert (one.unit == "degrees") == name.endswith("_degrees"), name
         assert not one.refusal(one.default), name
 
 

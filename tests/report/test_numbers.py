@@ -27,7 +27,9 @@ from tests.report.hand_made import (
     RUNS,
     WHOLE,
     learned_run,
+    row,
     session_of,
+    step,
     trial_info,
 )
 
@@ -83,6 +85,14 @@ def test_trials_whose_simulation_failed_count_for_nothing() -> None:
     assert found is not None
     assert (found.broken.solved, found.broken.trials) == (1, 2)
     assert breaking_of(session, ended[1:2], losses) is None
+
+
+def test_a_row_that_fails_and_stays_probable_is_not_excluded() -> None:
+    """§6.2: rows of a probability of at most 1/2 are."""
+    failed = replace(BROKEN[2], steps=(step(1, row(9, used=4, successful=4), seen=(0.0, 0.0)),))
+    tally = Tally.of([failed])
+    assert (tally.tries, tally.replicated, tally.excluded) == (1, 0, 0)
+    assert dead_rows([failed], 3.5) == []
 
 
 def test_dead_rows_and_their_side() -> None:

@@ -95,6 +95,18 @@ def test_a_trial_without_steps_counts_as_one(store: Store, run: LearningRunInfo)
     assert group == TrialGroup(1, 1, 1, ())
 
 
+def test_a_row_that_fails_and_stays_probable_is_not_excluded(
+    store: Store, run: LearningRunInfo
+) -> None:
+    """§6.2: one of at most 1/2 is; it counts once, in however many trials."""
+    first, second, _ = rows_of(store, run)
+    vain = trial_step(first, 1, seen=(0.0, 0.0), lost=True)
+    proven = replace(second, times_used=4, times_successful=4)
+    session = save(store, run, 1, vain, trial_step(proven, 2, seen=(0.0, 0.0), lost=True))
+    save(store, run, 2, vain, outcome=Outcome.NO_ROW)
+    assert store.results.losses(session, BROKEN) == (3, 1)
+
+
 @pytest.mark.parametrize("side", [LEFT, 0.0])
 def test_rows_on_the_other_side_do_not_count(
     side: float, store: Store, run: LearningRunInfo

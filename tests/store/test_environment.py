@@ -1,5 +1,8 @@
 """What can be relied on where a database lies (fault 17)."""
 
+import os
+import sqlite3
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -16,7 +19,12 @@ server:/home /home nfs4 rw 0 0
 
 
 def facts(path: Path) -> dict[str, Fact]:
-    return {fact.what: fact for fact in environment_facts(path)}
+    """Return what is said of a place; whatever is not well comes with what to do about it."""
+    found = environment_facts(path)
+    for fact in found:
+        assert fact.value
+        assert fact.state == "ok" or fact.remedy or "; name another file" in fact.value
+    return {fact.what: fact for fact in found}
 
 
 @pytest.mark.fault(17)
@@ -68,6 +76,32 @@ def test_what_must_be_mended_says_how(database: Path, tmp_path: Path) -> None:
     assert facts(old)["database"].remedy == "run `affcli db upgrade`"
     assert facts(tmp_path / "new.db")["database"].state == "ok"
     assert not (tmp_path / "new.db").exists()
+
+
+@pytest.mark.parametrize(("version", "state"), [((3, 36, 9), "look"), ((3, 37, 0), "ok")])
+def test_an_sqlite_without_strict_tables_is_pointed_out(
+    version: tuple[int, ...], state: str, database: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sqlite3, "sqlite_version_info", version)
+    found = facts(database)["SQLite"]
+    assert (found.state, found.value.partition(";")[0]) == (state, ".".join(map(str, version)))
+
+
+@pytest.mark.parametrize("refused", ["folder", "file"])
+def test_a_place_that_cannot_be_written_is_pointed_out(
+    refused: str, database: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    closed = {"folder": database.parent, "file": database}[refused]
+    monkeypatch.setattr(os, "access", lambda path, mode: mode != os.W_OK or path != closed)
+    assert facts(database)["permissions"].state == "look"
+
+
+def test_a_database_of_a_newer_affcli_is_pointed_out(database: Path) -> None:
+    with closing(sqlite3.connect(database)) as driver, driver:
+        driver.execute("UPDATE alembic_version SET version_num = '9999'")
+    found = facts(database)["database"]
+    assert (found.state, found.remedy) == ("bad", "install a newer affcli")
+    assert found.value.startswith("revision 9999, ")
 
 
 def test_little_room_is_pointed_out(database: Path, monkeypatch: pytest.MonkeyPatch) -> None:
