@@ -5,7 +5,6 @@ from typing import Annotated
 import typer
 
 from affcli import lab
-from affcli.analysis.statistics import ENOUGH_ROBOTS
 from affcli.cli.database import opened
 from affcli.cli.figure_learned import check_out, save_figure
 from affcli.cli.files import save
@@ -91,7 +90,7 @@ def results(
     if found.session is None:
         say(
             f"no finished reproduction, so results of {title}: {one_line(out)}; for those of many "
-            f"robots run affcli reproduce --robots {ENOUGH_ROBOTS}"
+            f"robots run affcli reproduce --robots 20"
         )
     else:
         words = ", ".join(filter(None, (title, results_note(found))))

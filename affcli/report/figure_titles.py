@@ -5,10 +5,9 @@ from collections.abc import Iterable, Sequence
 from affcli.analysis.adaptation import AdaptationCourse
 from affcli.analysis.comparison import Results
 from affcli.analysis.curves import Curve, ToolCurves
-from affcli.analysis.statistics import ENOUGH_ROBOTS
 from affcli.core.records import LearningRunInfo, SessionInfo
 from affcli.report.figures.words import tool_words
-from affcli.report.words import many, run_words
+from affcli.report.words import few_robots_note, many, run_words
 
 
 def results_title(results: Results) -> str:
@@ -26,11 +25,6 @@ def results_title(results: Results) -> str:
 def results_note(results: Results) -> str:
     """Return why there are no intervals; empty when there are, or none are expected."""
     return "" if results.session is None else few_robots_note(results.robots)
-
-
-def few_robots_note(robots: int) -> str:
-    """Return that robots are too few for intervals; empty when they are not."""
-    return f"too few robots for intervals ({ENOUGH_ROBOTS} or more)" * (robots < ENOUGH_ROBOTS)
 
 
 def course_title(course: AdaptationCourse) -> str:

@@ -25,6 +25,7 @@ from affcli.report.figures.canvas import (
 from affcli.report.figures.key import draw_key
 from affcli.report.figures.maps import columns_for
 from affcli.report.figures.words import tool_words
+from affcli.report.words import spread_words
 
 DASHES: tuple[Any, ...] = (
     "-",
@@ -40,8 +41,6 @@ MOST_CURVES = len(COLORS) * len(MARKERS)
 """More than these nobody tells apart."""
 MOST_BESIDE = 5
 """Tools in a row of the page."""
-WHOLE_RANGE = 39
-"""Of so many robots or fewer the central 95 % is all of them."""
 NAMES = ("rows made", "share of behaviors\nwith an effect so far")
 SHADE = "#bcd9ea"
 """Of the bands: `SKY`, paler."""
@@ -74,7 +73,6 @@ def bands_figure(tools: Sequence[ToolCurves]) -> Figure:
     columns = columns_for(len(tools), MOST_BESIDE)
     rows = 2 * math.ceil(len(tools) / columns)
     robots = max(tool.robots for tool in tools)
-    spread = "range" if robots <= WHOLE_RANGE else "central 95 %"
     with canvas(TWO_COLUMNS if columns > 2 else ONE_COLUMN, 0.3 + 1.35 * rows) as figure:
         grid = figure.subplots(rows, columns, sharex=True, squeeze=False)
         # The first of each two rows shows the rows made, the second the share of effects.
@@ -98,7 +96,7 @@ def bands_figure(tools: Sequence[ToolCurves]) -> Figure:
         for pair in pairs[: len(tools)]:
             _finish(*pair)
         mean = Line2D([], [], color=BLUE, linewidth=1.1), f"mean of {robots} robots"
-        draw_key(figure, [mean, (Patch(facecolor=SHADE), f"{spread} of the robots")])
+        draw_key(figure, [mean, (Patch(facecolor=SHADE), f"{spread_words(robots)} of the robots")])
     return figure
 
 

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from affcli.analysis.prediction import Push, Score, scores
-from affcli.analysis.statistics import wilson
+from affcli.analysis.statistics import exact_interval
 from affcli.report.figures.canvas import (
     BLUE,
     FAINT,
@@ -59,7 +59,7 @@ def _draw_shares(axes: Axes, growing: Sequence[Score]) -> None:
         ("false alarms", VERMILION, "s", [(s.false_alarms, s.still) for s in growing]),
     ):
         shares = [count / of if of else 0.0 for count, of in counts]
-        bounds = [wilson(count, of) for count, of in counts]
+        bounds = [exact_interval(count, of) for count, of in counts]
         below = [share - low for share, (low, _) in zip(shares, bounds, strict=True)]
         above = [high - share for share, (_, high) in zip(shares, bounds, strict=True)]
         axes.errorbar(

@@ -17,7 +17,6 @@ from affcli.analysis.paper import (
     row_name,
 )
 from affcli.analysis.reproduction import failures_in
-from affcli.analysis.statistics import ENOUGH_ROBOTS
 from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome
 from affcli.errors import one_line
@@ -25,7 +24,15 @@ from affcli.report.json_table import plain
 from affcli.report.page import answers, drawings, films
 from affcli.report.page.content import Broken, Content, LearnedRows
 from affcli.report.reproduction import reproduction_json
-from affcli.report.words import call_words, clock, in_order, run_words, unknown_shapes
+from affcli.report.words import (
+    call_words,
+    clock,
+    few_robots_note,
+    in_order,
+    run_words,
+    spread_words,
+    unknown_shapes,
+)
 
 HOME = "affcli.report.page"
 """Where template, style sheet and scripts lie."""
@@ -115,7 +122,6 @@ def _results(content: Content) -> dict[str, Any]:
             **shared,
             "result": None,
             "results_answer": answers.solved_by_one(content.replays),
-            "enough": False,
             "failures": failed.kinds.items(),
             "failed_of": failed.trials,
             "invalid": failed.invalid,
@@ -130,7 +136,8 @@ def _results(content: Content) -> dict[str, Any]:
         "results_answer": answers.reproduced(content.reproduction),
         "by_tool": by_tool.items(),
         "settings": run_words(content.reproduction.session.spec),
-        "enough": content.reproduction.robots >= ENOUGH_ROBOTS,
+        "spread": spread_words(content.reproduction.robots),
+        "few": few_robots_note(content.reproduction.robots),
         "failures": result["failures"].items(),
         "failed_of": result["trials"],
         "invalid": result["invalid"],
