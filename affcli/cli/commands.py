@@ -146,6 +146,8 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
             "Show tools learned, rows by behavior, trials beside the paper's, and failures by "
             "kind.",
         ),
+        Command("compare", "compare:compare", "Compare conditions robot by robot: did it matter?"),
+        Command("power", "power:power", "Say how many robots it takes to see a difference."),
         Command(
             "replay",
             "replay:replay",
