@@ -3,11 +3,11 @@
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from statistics import fmean, stdev
+from statistics import fmean
 
 import numpy as np
 
-from affcli.analysis.statistics import exact_interval, mean_interval
+from affcli.analysis.statistics import deviation, exact_interval, mean_interval
 from affcli.core.results import Cell, ConditionCounts
 
 LEVEL = 0.05
@@ -57,7 +57,7 @@ class Difference:
         """Compare (before, after) of each robot, of which there is one at least."""
         differences = [after - before for before, after in pairs]
         better, worse = sum(d > 0 for d in differences), sum(d < 0 for d in differences)
-        spread = stdev(differences) if len(pairs) > 1 else 0.0
+        spread = deviation(differences) if len(pairs) > 1 else 0.0
         p = sign_flip_p(differences)
         return cls(
             condition,

@@ -3,11 +3,12 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from statistics import stdev
 
-from affcli.analysis.statistics import FEWEST, mean_interval
+from affcli.analysis.statistics import FEWEST, deviation, mean_interval
 from affcli.core.results import Cell
 
+CERTAIN = 37.0
+"""A mean so many of its standard errors from 0 is seen; SciPy knows no chance that near 1."""
 MOST = 10_000_000
 """More robots than these are not counted."""
 
@@ -34,17 +35,20 @@ class Plan:
 
 
 def power(robots: int, difference: float, spread: float, level: float) -> float:
-    """Return the chance that so many robots show a difference (noncentral t).
+    """Return the chance that so many robots show a difference.
 
-    Too few robots for the exact test to reach the level have none.
+    The square of the noncentral t is the noncentral F. Too few robots for the exact test to reach
+    the level have none.
     """
-    from scipy.special import nctdtr, stdtrit
+    from scipy.special import ncfdtr, stdtrit
 
     if robots < least_robots(level):
         return 0.0
-    freedom, center = robots - 1, abs(difference) / spread * math.sqrt(robots)
-    bound = stdtrit(freedom, 1.0 - level / 2.0)
-    return float(1.0 - nctdtr(freedom, center, bound) + nctdtr(freedom, center, -bound))
+    center = abs(difference) / spread * math.sqrt(robots)
+    if center > CERTAIN:
+        return 1.0
+    bound = stdtrit(robots - 1, 1.0 - level / 2.0)
+    return float(1.0 - ncfdtr(1, robots - 1, center**2, bound**2))
 
 
 def least_robots(level: float) -> int:
@@ -107,7 +111,7 @@ def plan(
     """
     if mean_interval(values) is None:
         return None
-    spread = stdev(values)
+    spread = deviation(values)
     if correlation is not None:
         spread *= math.sqrt(2.0 * (1.0 - correlation))
     needed = {one: robots_needed(one, spread, level, wanted) for one in differences}

@@ -91,6 +91,16 @@ FIGURE = Group(
             "figure_prediction:prediction",
             "Draw how well a table predicts fresh pushes.",
         ),
+        Command(
+            "compare",
+            "figure_compared:compare",
+            "Draw differences between conditions with their intervals.",
+        ),
+        Command(
+            "curve",
+            "figure_compared:curve",
+            "Draw a measure of conditions against robot time, rows or a swept setting.",
+        ),
     ),
 )
 

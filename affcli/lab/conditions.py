@@ -1,9 +1,9 @@
 """Conditions compared robot by robot, and how many robots it would take."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from affcli.analysis.paired import LEVEL, Comparison, in_common, summed
+from affcli.analysis.paired import LEVEL, Comparison, Counts, in_common, summed
 from affcli.analysis.power import Plan, plan
 from affcli.core.names import one_of
 from affcli.core.records import SessionInfo
@@ -114,9 +114,9 @@ def planned(
     counts = [counts_of(store, one, by).cells for one in conditions]
     plans: list[Plan] = []
     empty: list[Cell] = []
-    parts = [[summed(cells) for cells in counts]]
+    parts: list[list[Mapping[Cell, Counts]]] = [[summed(cells) for cells in counts]]
     if any(BY[key] for key in by):
-        parts.append([dict(cells) for cells in counts])
+        parts.append(counts)
     for before, *after in parts:
         level = LEVEL / (1 if before is parts[0][0] else len(before))
         for cell, own in before.items():

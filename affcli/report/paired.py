@@ -14,9 +14,10 @@ from affcli.report.sheet import Sheet
 from affcli.report.words import fixed, many, run_words
 
 METHOD = (
-    "interval: 95 % of the mean difference, Student's t; - where too few robots differ for one",
-    "d: mean over standard deviation of the differences; +/-: robots better and worse",
-    "p: exact sign-flip test, corrected for {tests} (Holm); * = significant",
+    "95 % interval: of the mean change, Student's t; - where too few robots differ for one",
+    "d: mean over standard deviation of the changes",
+    "+/-: robots better and worse",
+    "p: exact sign-flip test, corrected by Holm for {tests} tests; * = significant at 5 %",
 )
 FIELDS = ("protocol", "task_set", "tool", "shape", "goal", "start")
 COLUMNS = (
@@ -28,38 +29,39 @@ COLUMNS = (
 
 
 def comparison_tables(result: Comparison) -> list[Sheet]:
-    """Return all trials, the cells that differ with those that do not, and who is compared."""
-    tables = [_table(result, result.totals, "all trials")]
-    if result.cells:
-        tables.append(_table(result, result.cells, ""))
-    if result.same:
-        tables.append(_same_table(result.same))
-    return [*tables, _conditions_table(result)]
+    """Return for each condition all trials and the cells that differ; then those that do not."""
+    tables = []
+    for other in result.others:
+        for label, differences in (("all trials", result.totals), ("", result.cells)):
+            own = [one for one in differences if one.condition == other.name]
+            if own:
+                tables.append(_table(result, other, own, label))
+    return [
+        *tables,
+        *([_same_table(result.same)] if result.same else []),
+        _conditions_table(result),
+    ]
 
 
-def _table(result: Comparison, differences: Sequence[Difference], label: str) -> Sheet:
-    """Return a table of differences: a row a cell and condition."""
-    several = len(result.others) > 1
-    names = ("solved", "against") if several else (result.others[0].name, result.against.name)
+def _table(
+    result: Comparison, other: ConditionCounts, differences: Sequence[Difference], label: str
+) -> Sheet:
+    """Return a table of differences: a row for all trials of a protocol, or for a cell."""
     cells = [one.cell for one in differences]
-    headings, words = ((label,), [(total_words(c, cells),) for c in cells])
-    if not label:
-        headings, words = cell_words(cells)
-    left = (*headings, *(("condition",) if several else ()))
+    headings, words = cell_words(cells)
+    robots = many(max(one.robots for one in differences), "pair") + " of robots"
+    if label:
+        headings, words = (label,), [(total_words(one, cells),) for one in differences]
     table = Sheet(
-        (*left, *names[::-1], "change", "95 % interval", "d", "+/-", "p"),
-        title=title(result) if label else "",
-        left=left,
-        caption="; ".join(METHOD).format(tests=many(len(differences), "test")) if label else
-        f"p corrected for {many(len(differences), 'test')}",
-    )  # fmt: skip
-    for one, named in zip(differences, words, strict=True):
-        cell = (f"{named[0]}, of {one.trials:g}",) if label else named
+        (*headings, result.against.name, other.name, "change", "95 % interval", "d", "+/-", "p"),
+        title=f"{other.name} against {result.against.name}: {robots}" if label else "",
+        left=headings,
+    )
+    for one, cell in zip(differences, words, strict=True):
         table.add(
-            *(*cell, *((one.condition,) if several else ())),
-            *(fixed(one.before, 2), fixed(one.after, 2), signed(one.mean), interval_words(one)),
-            *("-" if one.effect is None else signed(one.effect), f"{one.better}/{one.worse}"),
-            p_words(one),
+            *(*cell, fixed(one.before, 2), fixed(one.after, 2), signed(one.mean)),
+            *(interval_words(one), "-" if one.effect is None else signed(one.effect)),
+            *(f"{one.better}/{one.worse}", p_words(one)),
         )
     return table
 
@@ -67,8 +69,8 @@ def _table(result: Comparison, differences: Sequence[Difference], label: str) ->
 def title(result: Comparison) -> str:
     """Return who is compared with whom."""
     names = " and ".join(other.name for other in result.others)
-    robots = max(one.robots for one in result.totals) if result.totals else 0
-    return f"{names} against {result.against.name}: {many(robots, 'robot')}, pair by pair"
+    robots = max((one.robots for one in result.totals), default=0)
+    return f"{names} against {result.against.name}: {many(robots, 'pair')} of robots"
 
 
 def _same_table(same: Sequence[Difference]) -> Sheet:
@@ -84,14 +86,15 @@ def _same_table(same: Sequence[Difference]) -> Sheet:
 
 
 def _conditions_table(result: Comparison) -> Sheet:
-    """Return what each condition is, and which of its robots do not pair."""
-    conditions = (result.against, *result.others)
+    """Return what each condition is, which of its robots do not pair, and what the tables say."""
     seed = result.against.session.spec.seed
     left_out = bool(result.left_out)
     columns = ("condition", "robots", "settings and parts", *(("left out",) if left_out else ()))
-    caption = "left out: not in both, or not with as many trials" if left_out else ""
-    table = Sheet(columns, left=columns, title=f"Conditions, seed {seed}", caption=caption)
-    for one in conditions:
+    tests = [len(result.totals)] + [len(result.cells)] * bool(result.cells)
+    notes = [note.format(tests=" and ".join(map(str, tests))) for note in METHOD]
+    notes += ["left out: not in both, or not with as many trials"] * left_out
+    table = Sheet(columns, left=columns, title=f"Conditions, seed {seed}", caption="; ".join(notes))
+    for one in (result.against, *result.others):
         missing = (ranges(result.left_out.get(one.name, ())),) if left_out else ()
         table.add(one.name, str(len(one.robots)), run_words(one.session.spec), *missing)
     return table
@@ -121,10 +124,10 @@ def held_words(cell: Cell) -> str:
     return cell.tool if cell.shape in ("", cell.tool) else f"{cell.tool} as {cell.shape}"
 
 
-def total_words(cell: Cell, cells: Sequence[Cell]) -> str:
-    """Return a protocol, with the task set where there are several."""
-    several = len({one.task_set for one in cells}) > 1
-    return one_line(f"{cell.protocol}, {cell.task_set}" if several else cell.protocol, 60)
+def total_words(one: Difference, cells: Sequence[Cell]) -> str:
+    """Return a protocol with its number of trials, and the task set where there are several."""
+    tasks = f", {one.cell.task_set}" if len({cell.task_set for cell in cells}) > 1 else ""
+    return one_line(f"{one.cell.protocol}{tasks}, of {one.trials:g}", 60)
 
 
 def whole_words(cell: Cell) -> str:

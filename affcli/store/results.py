@@ -87,22 +87,31 @@ class Results:
         """
         t = trial.c
         names = ["protocol", "task_set", *by]
-        columns = [t[name] for name in names]
-        wanted = (
+        robots = (
             sa.select(
-                *columns,
+                *(t[name] for name in names),
                 t.robot,
-                sa.func.count(),
-                sa.func.sum(sa.case((t.outcome == Outcome.SOLVED.value, 1), else_=0)),
+                sa.func.count().label("trials"),
+                sa.func.sum(sa.case((t.outcome == Outcome.SOLVED.value, 1), else_=0)).label(
+                    "solved"
+                ),
+                sa.func.min(t.id).label("first"),
             )
             .where(t.session_id == session_id, t.outcome.in_(COUNTED))
-            .group_by(*columns, t.robot)
-            .order_by(sa.func.min(t.id))
+            .group_by(t.robot, *(t[name] for name in names))
+            .subquery()
+        )
+        columns = [robots.c[name] for name in names]
+        # A row a cell, its robots in lists: a row a robot and cell would take three times as long.
+        lists = [sa.func.group_concat(robots.c[n]) for n in ("robot", "trials", "solved")]
+        wanted = (
+            sa.select(*columns, *lists).group_by(*columns).order_by(sa.func.min(robots.c.first))
         )
         cells: dict[Cell, dict[int, tuple[int, int]]] = {}
-        for *values, robot, trials, solved in self._all(wanted):
-            cell = Cell(**dict(zip(names, values, strict=True)))
-            cells.setdefault(cell, {})[robot] = trials, solved
+        for row in self._all(wanted):
+            cell = Cell(**dict(zip(names, row, strict=False)))
+            numbers, trials, solved = (map(int, text.split(",")) for text in row[len(names) :])
+            cells[cell] = dict(zip(numbers, zip(trials, solved, strict=True), strict=True))
         return cells
 
     def outcome_counts(self, session_ids: Iterable[int]) -> dict[Outcome, int]:
