@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import accumulate
 from statistics import fmean
 
-from affcli.analysis.statistics import ENOUGH_ROBOTS, mean_interval, wilson
+from affcli.analysis.statistics import FEWEST, exact_interval, mean_interval, t95
 from affcli.core.records import LearningRunInfo, SessionInfo
 from affcli.core.results import StepSums, TrialGroup
 
@@ -18,7 +18,7 @@ class Share:
         number: which step.
         trials: how many trials took it: those still running.
         share: of them that tried a lost row.
-        interval: 95 %; None where there are too few robots for one.
+        interval: 95 %; None where `share_interval` gives none.
     """
 
     number: int
@@ -34,7 +34,7 @@ class MeanProbability:
     Args:
         number: which step; 0 for the beginning.
         mean: over the rows, and over the trials.
-        interval: 95 % of the mean; None where there are too few robots for one.
+        interval: 95 % of the mean; None where `mean_interval` gives none.
     """
 
     number: int
@@ -83,52 +83,51 @@ class AdaptationCourse:
         return cls(session, tool, shape, trials, shares, *courses, run)
 
 
-def has_intervals(groups: Sequence[TrialGroup]) -> bool:
-    """Tell whether there are intervals over these groups.
-
-    Those of one robot are its trials, and say what further trials of this robot would give. Of
-    several robots there must be `ENOUGH_ROBOTS`.
-    """
-    return len(groups) >= ENOUGH_ROBOTS or all(group.trials == 1 for group in groups)
-
-
 def shares_of(groups: Sequence[TrialGroup]) -> tuple[Share, ...]:
-    """Return the share of tries on lost affordances at each step number, among trials that run."""
+    """Return the share of tries on lost affordances at each step number, among trials that run.
+
+    The groups of one robot are its trials: intervals say what further trials of it would give.
+    """
     steps: dict[int, list[StepSums]] = {}
     for sums in (sums for group in groups for sums in group.steps):
         steps.setdefault(sums.number, []).append(sums)
-    certain = has_intervals(groups)
     shares = []
     for number in sorted(steps):
         trials = sum(sums.trials for sums in steps[number])
         lost = sum(sums.lost for sums in steps[number])
         pairs = [(sums.lost, sums.trials) for sums in steps[number]]
-        shares.append(
-            Share(number, trials, lost / trials, share_interval(pairs) if certain else None)
-        )
+        shares.append(Share(number, trials, lost / trials, share_interval(pairs)))
     return tuple(shares)
 
 
-def share_interval(groups: Sequence[tuple[int, int]]) -> tuple[float, float]:
+def share_interval(groups: Sequence[tuple[int, int]]) -> tuple[float, float] | None:
     """Return a 95 % interval of a share from groups whose trials may be alike.
 
-    Wilson's interval for as many independent trials as these tell as much as: trials of one robot
+    The exact interval for as many independent trials as these tell as much as: trials of one robot
     share what it learned. Their number is divided by the design effect, how many times larger the
-    variance between groups makes that of the share (at least 1; 1 where it cannot be told).
+    variance between groups makes that of the share, which few groups tell badly (Korn and Graubard,
+    1998; at least 1 in all).
 
     Args:
         groups: (of the kind in question, in all) in each group.
+
+    Returns:
+        The interval; None when fewer than `FEWEST` groups hold more than a trial each.
     """
-    kind = sum(k for k, _ in groups)
     n = sum(m for _, m in groups)
+    if n == len(groups):
+        return exact_interval(sum(k for k, _ in groups), n)
+    if len(groups) < FEWEST:
+        return None
+    kind = sum(k for k, _ in groups)
     share = kind / n
     alone = share * (1.0 - share) / n
     effect = 1.0
-    if len(groups) > 1 and alone > 0.0:
+    if alone > 0.0:
         squares = sum((k - share * m) ** 2 for k, m in groups)
         between = len(groups) / (len(groups) - 1) * squares / n**2
-        effect = max(1.0, between / alone)
-    return wilson(kind / effect, n / effect)
+        effect = max(1.0, between / alone * (t95(len(groups) - 1) / t95(n - 1)) ** 2)
+    return exact_interval(kind / effect, n / effect)
 
 
 def probabilities_of(groups: Sequence[TrialGroup], last: int) -> tuple[MeanProbability, ...]:
@@ -148,15 +147,10 @@ def probabilities_of(groups: Sequence[TrialGroup], last: int) -> tuple[MeanProba
     courses = [_course(group, last) for group in groups if group.with_rows]
     if not courses:
         return ()
-    certain = has_intervals(groups) and len(courses) > 1
-    means = []
-    for number, values in enumerate(zip(*courses, strict=True)):
-        mean = fmean(values)
-        interval = mean_interval(values) if certain else None
-        if interval is not None:
-            interval = max(0.0, interval[0]), min(1.0, interval[1])
-        means.append(MeanProbability(number, mean, interval))
-    return tuple(means)
+    return tuple(
+        MeanProbability(number, fmean(values), mean_interval(values, 0.0, 1.0))
+        for number, values in enumerate(zip(*courses, strict=True))
+    )
 
 
 def _course(group: TrialGroup, last: int) -> list[float]:

@@ -15,7 +15,7 @@ from affcli.analysis.paper import (
     row_name,
 )
 from affcli.analysis.reproduction import Reproduction
-from affcli.analysis.statistics import ENOUGH_ROBOTS, Spread
+from affcli.analysis.statistics import Spread
 from affcli.core.records import SessionInfo, TrialInfo
 from affcli.core.specs import LearningSpec, Protocol
 from affcli.core.trial import Outcome, is_counted
@@ -36,21 +36,16 @@ class Beside:
     tried: int
 
     @property
-    def spread(self) -> Spread | None:
-        """Intervals over the robots; None when there are too few of them."""
-        return Spread.of(self.counts) if len(self.counts) >= ENOUGH_ROBOTS else None
-
-    @property
-    def mean(self) -> float:
-        """Mean of our counts; ValueError when there are none."""
-        return Spread.of(self.counts).mean
+    def spread(self) -> Spread:
+        """Mean and intervals over the robots; ValueError when nothing was tried."""
+        return Spread.of(self.counts, self.tried)
 
     @property
     def outside(self) -> bool:
-        """The paper's count does not lie in the central 95 % of robots."""
-        if self.spread is None or self.paper is None:
+        """The paper's count does not lie in the central 95 % of robots, of which there are many."""
+        if self.paper is None or not self.counts:
             return False
-        return not self.spread.holds(self.paper)
+        return self.spread.holds(self.paper) is False
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import accumulate
 from statistics import fmean
 
-from affcli.analysis.statistics import ENOUGH_ROBOTS, HIGH, LOW, mean_interval, quantile
+from affcli.analysis.statistics import HIGH, LOW, mean_interval, quantile
 from affcli.core.records import LearningRunInfo
 from affcli.core.results import LearningInterval
 
@@ -67,7 +67,7 @@ class Band:
     Args:
         mean: over the robots.
         low, high: the central 95 % of robots, as in the tables of `reproduce`.
-        mean_low, mean_high: 95 % interval of the mean; NaN where there are too few robots.
+        mean_low, mean_high: 95 % interval of the mean; NaN where `mean_interval` gives none.
     """
 
     mean: Sequence[float]
@@ -87,7 +87,7 @@ def _point(values: Sequence[float]) -> tuple[float, float, float, float, float]:
     """Return the numbers of a band at one time."""
     if any(map(math.isnan, values)):
         return (math.nan,) * 5
-    certain = mean_interval(values) if len(values) >= ENOUGH_ROBOTS else None
+    certain = mean_interval(values)
     spread = quantile(values, LOW), quantile(values, HIGH)
     return fmean(values), *spread, *(certain or (math.nan, math.nan))
 

@@ -1,67 +1,82 @@
-"""The few statistics that the reports state, in plain Python."""
+"""The few statistics that the reports state, and the one rule for when there is an interval.
+
+README.md of this folder says why these, and how often they were right when measured. SciPy is
+imported where a quantile is needed: its start takes 0.2 s.
+"""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from statistics import NormalDist, fmean, stdev
+from statistics import fmean, mode
 from typing import TypeVar
 
 LOW, HIGH = 0.025, 0.975
-"""The central 95 % of robots."""
+"""The central 95 % of robots; the ends of every interval."""
 
-ENOUGH_ROBOTS = 20
-"""With fewer, the central 95 % of robots is hardly more than their range: it is compared with
-nothing, and shares and probabilities over robots get no interval."""
+FEWEST = 5
+"""Of fewer robots no interval of a mean is given, nor of a share of trials that they share."""
+ENOUGH_OFF = 10
+"""A mean has an interval if so many robots differ from the commonest value, or half of them."""
+ENOUGH_ROBOTS = 40
+"""Of fewer, the central 95 % is all of them: it is called their range, and compared with nothing.
+The range of n robots leaves out another one of their kind 2 times in n + 1."""
 
 Value = TypeVar("Value", int, float)
 
-Z95 = NormalDist().inv_cdf(HIGH)
 
-
-def wilson(successes: float, tries: float) -> tuple[float, float]:
-    """Return the 95 % interval of a share by Wilson's score (1927); (0, 1) without tries.
+def exact_interval(successes: float, tries: float) -> tuple[float, float]:
+    """Return the exact 95 % interval of a share (Clopper and Pearson, 1934); (0, 1) without tries.
 
     Args:
-        successes, tries: counts; parts of them where several tries tell no more than one.
+        successes, tries: counts; parts of them where several tries tell no more than one (Korn and
+            Graubard, 1998).
     """
     if tries == 0:
         return 0.0, 1.0
-    share, z2 = successes / tries, Z95 * Z95
-    middle = (share + z2 / (2 * tries)) / (1 + z2 / tries)
-    half = Z95 * math.sqrt(share * (1 - share) / tries + z2 / (4 * tries * tries))
-    half /= 1 + z2 / tries
-    # All or none of them: the interval ends there, whatever the last bit says.
-    low = 0.0 if successes == 0 else middle - half
-    return low, 1.0 if successes == tries else middle + half
+    from scipy.special import betaincinv
+
+    failures = tries - successes
+    low = float(betaincinv(successes, failures + 1, LOW)) if successes else 0.0
+    return low, float(betaincinv(successes + 1, failures, HIGH)) if failures else 1.0
 
 
-def mean_interval(values: Sequence[float]) -> tuple[float, float] | None:
-    """Return the 95 % interval of the mean by Student's t; None for a single value."""
-    if len(values) < 2:
+def mean_interval(
+    values: Sequence[float], least: float = -math.inf, most: float = math.inf
+) -> tuple[float, float] | None:
+    """Return the 95 % interval of the mean by Student's t; None where it would not hold.
+
+    That is for fewer than `FEWEST` values, and for values that saturate: all but a few are the
+    same, and how far the others lie off says little of how far they may.
+
+    Args:
+        values: one a robot.
+        least, most: no mean lies beyond.
+    """
+    if len(values) < FEWEST or saturates(values):
         return None
     mean = fmean(values)
-    half = t95(len(values) - 1) * stdev(values) / math.sqrt(len(values))
-    return mean - half, mean + half
+    half = t95(len(values) - 1) * deviation(values) / math.sqrt(len(values))
+    return max(least, mean - half), min(most, mean + half)
 
 
-def t95(freedom: int) -> float:
-    """Return the 0.975 quantile of Student's t.
+def deviation(values: Sequence[float]) -> float:
+    """Return the standard deviation, ten times as fast as `statistics.stdev` with its fractions."""
+    mean = fmean(values)
+    return math.sqrt(math.fsum((value - mean) ** 2 for value in values) / (len(values) - 1))
 
-    Exact for 1 and 2 degrees of freedom; for more, the expansion 26.7.5 of Abramowitz and Stegun
-    (1964), which is right to 2 in 1,000 for 3 and better for each more.
-    """
-    if freedom == 1:
-        return math.tan(math.pi * (HIGH - 0.5))
-    if freedom == 2:
-        return (2.0 * HIGH - 1.0) * math.sqrt(2.0 / (4.0 * HIGH * LOW))
-    z = Z95
-    terms = (
-        (z**3 + z) / 4,
-        (5 * z**5 + 16 * z**3 + 3 * z) / 96,
-        (3 * z**7 + 19 * z**5 + 17 * z**3 - 15 * z) / 384,
-        (79 * z**9 + 776 * z**7 + 1482 * z**5 - 1920 * z**3 - 945 * z) / 92160,
-    )
-    return z + sum(term / float(freedom**power) for power, term in enumerate(terms, start=1))
+
+def saturates(values: Sequence[float]) -> bool:
+    """Tell whether more than half of some values are the same, and fewer than ten are not."""
+    commonest = mode(values)
+    same = sum(value == commonest for value in values)
+    return same > (len(values) + 1) // 2 and len(values) - same < ENOUGH_OFF
+
+
+def t95(freedom: float) -> float:
+    """Return the 0.975 quantile of Student's t."""
+    from scipy.special import stdtrit
+
+    return float(stdtrit(freedom, HIGH))
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,24 +85,27 @@ class Spread:
 
     Args:
         mean: over the robots.
-        mean_ci: 95 % interval of the mean; None for one robot.
-        low, high: the central 95 % of robots: the smallest k with P(X <= k) at least 0.025, 0.975.
+        mean_ci: 95 % interval of the mean; None where `mean_interval` gives none.
+        low, high: the central 95 % of robots: the smallest k with P(X <= k) at least 0.025, 0.975;
+            the range of fewer than `ENOUGH_ROBOTS`.
+        robots: how many.
     """
 
     mean: float
     mean_ci: tuple[float, float] | None
     low: int
     high: int
+    robots: int
 
     @classmethod
-    def of(cls, counts: Sequence[int]) -> "Spread":
-        """Summarise one count for each robot; ValueError when there are none."""
-        mean, interval = fmean(counts), mean_interval(counts)
-        return cls(mean, interval, quantile(counts, LOW), quantile(counts, HIGH))
+    def of(cls, counts: Sequence[int], most: float = math.inf) -> "Spread":
+        """Summarise one count for each robot, of at most `most`; ValueError when there are none."""
+        mean, interval = fmean(counts), mean_interval(counts, 0.0, most)
+        return cls(mean, interval, quantile(counts, LOW), quantile(counts, HIGH), len(counts))
 
-    def holds(self, count: int) -> bool:
-        """Tell whether `count` lies in the central 95 % of robots."""
-        return self.low <= count <= self.high
+    def holds(self, count: int) -> bool | None:
+        """Tell whether `count` lies in the central 95 % of robots; None where they are too few."""
+        return self.low <= count <= self.high if self.robots >= ENOUGH_ROBOTS else None
 
 
 def quantile(values: Sequence[Value], share: float) -> Value:

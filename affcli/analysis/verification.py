@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from affcli.analysis.statistics import wilson
+from affcli.analysis.statistics import exact_interval
 from affcli.core.behavior import BehaviorCall
 from affcli.core.specs import VerificationSpec
 from affcli.core.verification import ReplicationRecord
@@ -92,6 +92,6 @@ def shares(tries: Iterable[JudgedTry], what: Callable[[JudgedTry], str]) -> list
     for one in tries:
         groups.setdefault(what(one), []).append(one.record.replicated)
     return [
-        Share(name, len(seen), sum(seen), *wilson(sum(seen), len(seen)))
+        Share(name, len(seen), sum(seen), *exact_interval(sum(seen), len(seen)))
         for name, seen in sorted(groups.items())
     ]

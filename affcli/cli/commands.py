@@ -91,6 +91,16 @@ FIGURE = Group(
             "figure_prediction:prediction",
             "Draw how well a table predicts fresh pushes.",
         ),
+        Command(
+            "compare",
+            "figure_compared:compare",
+            "Draw differences between conditions with their intervals.",
+        ),
+        Command(
+            "curve",
+            "figure_compared:curve",
+            "Draw a measure of conditions against robot time, rows or a swept setting.",
+        ),
     ),
 )
 
@@ -161,6 +171,8 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
             "Show tools learned, rows by behavior, trials beside the paper's, and failures by "
             "kind.",
         ),
+        Command("compare", "compare:compare", "Compare conditions robot by robot: did it matter?"),
+        Command("power", "power:power", "Say how many robots it takes to see a difference."),
         Command(
             "replay",
             "replay:replay",

@@ -6,7 +6,6 @@ from typing import Annotated
 import typer
 
 from affcli import lab
-from affcli.analysis.statistics import ENOUGH_ROBOTS
 from affcli.cli.database import opened
 from affcli.cli.figure import Figure, figure
 from affcli.cli.options import (
@@ -82,7 +81,7 @@ def results(
     if found.session is None:
         note = (
             "; there is no finished reproduction; for results of many robots run "
-            f"affcli reproduce --robots {ENOUGH_ROBOTS}"
+            "affcli reproduce --robots 20"
         )
     return Figure(results_words(found), partial(figures.results.results_figure, found), note)
 

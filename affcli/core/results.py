@@ -1,9 +1,11 @@
 """Counts and sums over stored records: what reports are made from."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from affcli.core.behavior import BehaviorCall
+from affcli.core.records import SessionInfo
 from affcli.core.specs import Protocol
 
 
@@ -124,3 +126,36 @@ class TrialGroup:
     trials: int
     with_rows: int
     steps: tuple[StepSums, ...]
+
+
+class Cell(NamedTuple):
+    """Which trials are counted together; empty where it makes no difference."""
+
+    protocol: str
+    task_set: str
+    tool: str = ""
+    shape: str = ""
+    goal: str = ""
+    start: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ConditionCounts:
+    """What the robots of one condition solved.
+
+    Args:
+        name: of the condition.
+        session: in which its trials are. Its robots are those of another condition number by
+            number, if the two share their seed.
+        cells: for each cell by robot how many trials ended, and how many of them were solved;
+            invalid ones are left out.
+    """
+
+    name: str
+    session: SessionInfo
+    cells: Mapping[Cell, Mapping[int, tuple[int, int]]]
+
+    @property
+    def robots(self) -> frozenset[int]:
+        """The numbers of the robots that tried anything."""
+        return frozenset().union(*self.cells.values())

@@ -8,9 +8,9 @@ from affcli import __version__
 from affcli.lab.workers import start_fault
 from affcli.store import Fact, State, environment_facts
 
-NEEDED = ("numpy", "pymunk", "SQLAlchemy", "alembic", "typer", "rich", "jinja2")
+NEEDED = ("numpy", "scipy", "pymunk", "SQLAlchemy", "alembic", "typer", "rich", "jinja2")
 EXTRAS = {
-    "the camera": ("camera", ("opencv-python-headless", "pillow", "scipy")),
+    "the camera": ("camera", ("opencv-python-headless", "pillow")),
     "figures": ("figures", ("matplotlib",)),
     "parquet files": ("parquet", ("pyarrow",)),
 }

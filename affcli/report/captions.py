@@ -6,14 +6,15 @@ from typing import NamedTuple
 from affcli.analysis.adaptation import AdaptationCourse
 from affcli.analysis.comparison import Results
 from affcli.analysis.curves import Curve
+from affcli.analysis.paired import Comparison
 from affcli.analysis.paper import PLANNER
 from affcli.analysis.prediction import Push
-from affcli.analysis.statistics import ENOUGH_ROBOTS
 from affcli.core.records import LearningRunInfo, SessionInfo, TrialInfo
 from affcli.core.specs import LearningSpec, SessionSpec, TrialSpec, VerificationSpec
 from affcli.core.tool import Tool
 from affcli.report.figures.words import broken_words, tool_words
-from affcli.report.words import clock, many, run_words, settings_words
+from affcli.report.paired import title as comparison_title
+from affcli.report.words import clock, few_robots_note, many, run_words, settings_words
 from affcli.simulation.arm import Reach
 
 HOURS = 1.0
@@ -149,11 +150,6 @@ def results_words(results: Results) -> Words:
     return Words("Successes beside the paper's", whose)
 
 
-def few_robots_note(robots: int) -> str:
-    """Return that robots are too few for intervals; empty when they are not."""
-    return f"too few robots for intervals ({ENOUGH_ROBOTS} or more)" * (robots < ENOUGH_ROBOTS)
-
-
 def adaptation_words(course: AdaptationCourse) -> Words:
     """Return whose trials they are, and why there are no intervals.
 
@@ -182,3 +178,27 @@ def prediction_words(run: LearningRunInfo, spec: VerificationSpec, pushes: Seque
             run_caption(run),
         ),
     )
+
+
+def comparison_words(result: Comparison) -> Words:
+    """Return which conditions are compared, each with its session, and what is not drawn."""
+    return Words(
+        comparison_title(result),
+        joined(
+            *(condition_name(one.name, one.session) for one in (result.against, *result.others)),
+            f"not drawn: {many(len(result.same), 'cell')} the same in all robots"
+            if result.same
+            else "",
+        ),
+    )
+
+
+def conditions_words(what: str, conditions: Sequence[tuple[str, SessionInfo]]) -> Words:
+    """Return a title, and which conditions it is of."""
+    return Words(what, joined(*(condition_name(*one) for one in conditions)))
+
+
+def condition_name(name: str, session: SessionInfo) -> str:
+    """Return a condition with what makes it: its session, robots, seed, what is not default."""
+    caption = session_caption(session, session.spec.robots)
+    return caption if caption.startswith(name) else f"{name}: {caption}"

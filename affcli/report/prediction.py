@@ -6,7 +6,7 @@ from typing import Any
 from rich.console import RenderableType
 
 from affcli.analysis.prediction import Errors, Push, scores
-from affcli.analysis.statistics import wilson
+from affcli.analysis.statistics import exact_interval
 from affcli.report.sheet import Sheet
 
 ERROR_COLUMNS = ("degrees", "degrees 95 %", "inches", "inches 95 %")
@@ -85,7 +85,7 @@ def _share(count: int, of: int) -> str:
     """Return a share with its interval."""
     if not of:
         return "-"
-    low, high = wilson(count, of)
+    low, high = exact_interval(count, of)
     return f"{count / of:.2f} ({low:.2f} to {high:.2f})"
 
 
@@ -102,10 +102,10 @@ def prediction_json(pushes: Sequence[Push]) -> list[dict[str, Any]]:
             "rows": score.rows,
             "moved": score.moved,
             "hits": score.hits,
-            "hit_rate_95": wilson(score.hits, score.moved),
+            "hit_rate_95": exact_interval(score.hits, score.moved),
             "still": score.still,
             "false_alarms": score.false_alarms,
-            "false_alarm_rate_95": wilson(score.false_alarms, score.still),
+            "false_alarm_rate_95": exact_interval(score.false_alarms, score.still),
             **{field: getattr(score, field)._asdict() for field in PREDICTORS},
         }
         for score in scores(pushes)

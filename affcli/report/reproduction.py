@@ -11,6 +11,7 @@ from affcli.analysis.paper import (
     EXTENSION_OF_REACH,
     GOALS,
     PLANNER,
+    STARTS,
     TASK_SET,
     TOTAL,
     TRIALS,
@@ -19,7 +20,14 @@ from affcli.analysis.paper import (
 from affcli.analysis.reproduction import Reproduction, Solved
 from affcli.analysis.statistics import ENOUGH_ROBOTS, Spread
 from affcli.report.sheet import Sheet
-from affcli.report.words import in_order, many, run_words, settings_words
+from affcli.report.words import (
+    few_robots_note,
+    in_order,
+    many,
+    run_words,
+    settings_words,
+    spread_words,
+)
 
 
 def reproduction_json(result: Reproduction) -> dict[str, Any]:
@@ -34,15 +42,16 @@ def reproduction_json(result: Reproduction) -> dict[str, Any]:
             {
                 "tool": tool,
                 "goal": goal,
-                **_against(mine, EXTENSION_OF_REACH[tool, goal]),
+                **_against(mine, EXTENSION_OF_REACH[tool, goal], STARTS),
                 "p_paper": mine.count(EXTENSION_OF_REACH[tool, goal]) / len(mine),
             }
             for (tool, goal), mine in result.cells.items()
         ],
-        "total": _against(result.totals, TOTAL) if result.totals else None,
-        "broken": _against(result.broken, BROKEN) if result.broken else None,
+        "total": _against(result.totals, TOTAL, TRIALS) if result.totals else None,
+        "broken": _against(result.broken, BROKEN, BROKEN_TRIALS) if result.broken else None,
         "others": [
-            {**kind._asdict(), "goal": goal, "trials": solved.tried, **_spread(solved.counts)}
+            {**kind._asdict(), "goal": goal, "trials": solved.tried}
+            | _spread(solved.counts, solved.tried / result.robots)
             for kind, goals in result.others.items()
             for goal, solved in goals.items()
         ],
@@ -53,14 +62,14 @@ def reproduction_json(result: Reproduction) -> dict[str, Any]:
     }
 
 
-def _against(counts: Sequence[int], paper: int) -> dict[str, Any]:
-    """Return the spread of `counts` beside the paper's count."""
-    return {"paper": paper, **_spread(counts), "inside": Spread.of(counts).holds(paper)}
+def _against(counts: Sequence[int], paper: int, most: int) -> dict[str, Any]:
+    """Return the spread of `counts`, each of at most `most`, beside the paper's count."""
+    return {"paper": paper, **_spread(counts, most), "inside": Spread.of(counts).holds(paper)}
 
 
-def _spread(counts: Sequence[int]) -> dict[str, Any]:
-    """Return the spread of `counts` as JSON types."""
-    spread = Spread.of(counts)
+def _spread(counts: Sequence[int], most: float) -> dict[str, Any]:
+    """Return the spread of `counts`, each of at most `most`, as JSON types."""
+    spread = Spread.of(counts, most)
     return {
         "mean": spread.mean,
         "mean_ci": None if spread.mean_ci is None else list(spread.mean_ci),
@@ -84,7 +93,7 @@ def _cells_table(result: Reproduction) -> Sheet:
     columns = ("tool", *(f"goal {goal}" for goal in GOALS))
     table = Sheet(
         columns,
-        title=f"Extension of reach: paper|mean of {many(result.robots, 'robot')} [central 95 %]",
+        title=f"Extension of reach: paper|{_of_robots(result.robots)}",
         caption=f"successes of 4 starts; {_note(result.robots)}\n{_session(result)}",
         left=columns,
     )
@@ -108,18 +117,22 @@ def _session(result: Reproduction) -> str:
 def _totals_table(result: Reproduction) -> Sheet:
     """Return the total and the broken tool's successes beside the paper's."""
     table = Sheet(
-        ("all trials", "paper", "mean", "95 % interval of the mean", "central 95 %"),
+        (
+            *("all trials", "paper", "mean", "95 % interval of the mean"),
+            spread_words(result.robots),
+        ),
         left=("all trials",),
+        caption=few_robots_note(result.robots),
     )
-    for name, counts, paper in (
-        (f"extension of reach, of {TRIALS}", result.totals, TOTAL),
-        (f"broken tool, of {BROKEN_TRIALS}", result.broken, BROKEN),
+    for name, counts, paper, most in (
+        ("extension of reach", result.totals, TOTAL, TRIALS),
+        ("broken tool", result.broken, BROKEN, BROKEN_TRIALS),
     ):
         if counts:
-            spread = Spread.of(counts)
+            spread = Spread.of(counts, most)
             interval = "-" if spread.mean_ci is None else "{:.1f} to {:.1f}".format(*spread.mean_ci)
             robots = _marked(f"[{spread.low},{spread.high}]", counts, paper)
-            table.add(name, str(paper), f"{spread.mean:.1f}", interval, robots)
+            table.add(f"{name}, of {most}", str(paper), f"{spread.mean:.1f}", interval, robots)
     return table
 
 
@@ -136,11 +149,10 @@ def _others_table(result: Reproduction) -> Sheet:
     more = {name: cells for name, cells in named.items() if set(cells) != {usual[name]}}
     tried = {solved.tried for own in result.others.values() for solved in own.values()}
     alike = f" of {tried.pop() / result.robots:g}" if len(tried) == 1 else ""
-    robots = many(result.robots, "robot")
     columns = ("tool", *more, *(f"goal {goal}" for goal in goals), "all")
     table = Sheet(
         columns,
-        title=f"Not in the paper: solved{alike}, mean of {robots} [central 95 %]",
+        title=f"Not in the paper: solved{alike}, {_of_robots(result.robots)}",
         caption="" if result.cells else _session(result),
         left=columns,
     )
@@ -165,21 +177,26 @@ def _of(solved: Solved, robots: int) -> str:
 
 
 def _cell(counts: Sequence[int]) -> str:
-    """Return the mean of counts and their central 95 %."""
+    """Return the mean of counts and their central 95 %; of one robot its count."""
     spread = Spread.of(counts)
-    return f"{spread.mean:.1f} [{spread.low},{spread.high}]"
+    return f"{spread.mean:.1f} [{spread.low},{spread.high}]" if len(counts) > 1 else str(spread.low)
+
+
+def _of_robots(robots: int) -> str:
+    """Return what the numbers of a cell are, of so many robots."""
+    return f"mean of {robots} robots [{spread_words(robots)}]" if robots > 1 else "one robot"
 
 
 def _marked(words: str, counts: Sequence[int], paper: int) -> Text:
     """Return the words of an interval, marked when enough robots leave the paper's count out."""
-    outside = len(counts) >= ENOUGH_ROBOTS and not Spread.of(counts).holds(paper)
+    outside = Spread.of(counts).holds(paper) is False
     return Text(f"{words}!", style="bold red") if outside else Text(words)
 
 
 def _note(robots: int) -> str:
-    """Return what the mark means, or that there are too few robots for one."""
+    """Return what the mark means, or how many robots it takes."""
     if robots < ENOUGH_ROBOTS:
-        return f"too few robots for intervals: give --robots {ENOUGH_ROBOTS} or more"
+        return f"from {ENOUGH_ROBOTS} robots on, ! marks where the paper's count lies outside"
     return "! = the paper's count lies outside"
 
 

@@ -69,7 +69,7 @@ def _verdict(found: Verification) -> Text:
 
 def _shares_table(heading: str, title: str, found: Sequence[Share], more: str = "") -> Sheet:
     """Return the observed replication probabilities of some groups."""
-    caption = "share that replicated, with its 95 % interval (Wilson)"
+    caption = "share that replicated, with its 95 % interval (exact)"
     table = Sheet(
         (heading, "tries", "replicated", "share", "95 % interval"),
         title=title,

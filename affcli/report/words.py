@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterable
 
 from affcli.analysis.paper import PLANNER, other_parts
+from affcli.analysis.statistics import ENOUGH_ROBOTS, FEWEST
 from affcli.core.behavior import BehaviorCall
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.choice import Reason, Reasons
@@ -20,6 +21,16 @@ def many(count: int, noun: str) -> str:
     if count == 1:
         return f"1 {noun}"
     return f"{count} {noun[:-1]}ies" if noun.endswith("ry") else f"{count} {noun}s"
+
+
+def few_robots_note(robots: int) -> str:
+    """Return that robots are too few for intervals; empty when they are not."""
+    return f"too few robots for intervals ({FEWEST} or more)" * (robots < FEWEST)
+
+
+def spread_words(robots: int) -> str:
+    """Return what lies from `Spread.low` to `Spread.high` of so many robots."""
+    return "central 95 %" if robots >= ENOUGH_ROBOTS else "range"
 
 
 def clock(seconds: float) -> str:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:  # OpenCV and SciPy load only when there is a picture to see
 
 POWER_UP = 2
 """First word of the key of the random stream that decides the noise at power-up."""
-CAMERA_PACKAGES = ("cv2", "PIL", "scipy")
+CAMERA_PACKAGES = ("cv2", "PIL")
 
 
 class SimulatedSight:
@@ -104,7 +104,7 @@ def require_camera() -> None:
     missing = [name for name in CAMERA_PACKAGES if find_spec(name) is None]
     if missing:
         raise UsageError(
-            "the camera needs OpenCV, Pillow and SciPy; install them: pip install 'affcli[camera]'"
+            "the camera needs OpenCV and Pillow; install them: pip install 'affcli[camera]'"
         )
 
 

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from camera_eye import bench_camera
+from comparing import bench_compare
 from measuring import Scale
 from other_engines import bench_peers
 from pushing import bench_loop, bench_pushes
@@ -34,6 +35,7 @@ BENCHES: dict[str, Callable[[Scale], dict[str, Any]]] = {
     "hours": bench_hours,
     "growth": bench_growth,
     "learn": bench_learn,
+    "compare": bench_compare,
     "camera": bench_camera,
     "workers": bench_workers,
     "reproduce": bench_reproduce,

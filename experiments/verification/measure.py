@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 
 from affcli.analysis.prediction import STAGES, Push, Score
 from affcli.analysis.regions import region_of
-from affcli.analysis.statistics import quantile, wilson
+from affcli.analysis.statistics import exact_interval, quantile
 from affcli.config import Settings, with_sensor
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import AffordanceTable
@@ -191,7 +191,7 @@ def rates(verdicts: Counter[str], robots: int) -> dict[str, Any]:
     return {
         verdict.value: {
             "robots": verdicts[verdict.value],
-            "share_95": wilson(verdicts[verdict.value], robots),
+            "share_95": exact_interval(verdicts[verdict.value], robots),
         }
         for verdict in Verdict
     }

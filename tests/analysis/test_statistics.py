@@ -9,7 +9,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from affcli.analysis.statistics import HIGH, LOW, Spread, quantile, t95, wilson
+from affcli.analysis.statistics import (
+    ENOUGH_OFF,
+    ENOUGH_ROBOTS,
+    FEWEST,
+    HIGH,
+    LOW,
+    Spread,
+    exact_interval,
+    mean_interval,
+    quantile,
+    saturates,
+    t95,
+)
 
 successes = st.lists(st.integers(0, 80), min_size=1, max_size=250)
 
@@ -39,34 +51,49 @@ def test_exactly_the_share_is_enough(robots: int) -> None:
 
 
 @given(successes, st.integers(0, 80))
-def test_the_papers_count_is_inside_from_low_to_high(counts: list[int], paper: int) -> None:
+def test_the_papers_count_is_inside_from_low_to_high_of_many_robots(
+    counts: list[int], paper: int
+) -> None:
     spread = Spread.of(counts)
     assert min(counts) <= spread.low <= spread.high <= max(counts)
-    assert spread.holds(paper) == (spread.low <= paper <= spread.high)
-    assert spread.holds(spread.low)
-    assert spread.holds(spread.high)
-
-
-@given(st.lists(st.integers(0, 80), min_size=2, max_size=250))
-def test_the_interval_of_the_mean_is_scipys(counts: list[int]) -> None:
-    spread = Spread.of(counts)
-    assert spread.mean == pytest.approx(fmean(counts))
-    assert spread.mean_ci is not None
-    error = stats.sem(counts)
-    if error == 0:
-        assert spread.mean_ci == (spread.mean, spread.mean)
+    if len(counts) < ENOUGH_ROBOTS:
+        assert (spread.low, spread.high) == (min(counts), max(counts))
+        assert spread.holds(paper) is None
     else:
+        assert spread.holds(paper) is (spread.low <= paper <= spread.high)
+
+
+@given(st.lists(st.integers(0, 80), min_size=FEWEST, max_size=250))
+def test_the_interval_of_the_mean_is_scipys_where_there_is_one(counts: list[int]) -> None:
+    found = mean_interval(counts)
+    assert (found is None) == saturates(counts)
+    if found is not None:
+        error = stats.sem(counts)
         theirs = stats.t.interval(0.95, len(counts) - 1, loc=fmean(counts), scale=error)
-        assert spread.mean_ci == pytest.approx(theirs, abs=0.002 * error * 3.2)
+        assert found == pytest.approx(theirs)
+        assert Spread.of(counts, 80).mean_ci == (max(0.0, found[0]), min(80.0, found[1]))
+
+
+@given(st.integers(FEWEST, 300), st.integers(0, 150))
+def test_a_mean_saturates_when_few_robots_are_off_the_commonest_value(n: int, off: int) -> None:
+    counts = [4] * n + [3] * off
+    fewer, more = sorted((n, off))
+    assert saturates(counts) == (more > (n + off + 1) // 2 and fewer < ENOUGH_OFF)
+    assert saturates(counts[::-1]) == saturates(counts)
+
+
+@pytest.mark.parametrize("robots", range(1, FEWEST))
+def test_few_robots_have_no_interval(robots: int) -> None:
+    assert mean_interval([60.6, 74.4, 68.0, 70.0][:robots]) is None
 
 
 @pytest.mark.parametrize("freedom", [1, 2, 3, 4, 5, 7, 15, 19, 30, 99, 1000])
 def test_the_quantile_of_students_t_is_scipys(freedom: int) -> None:
-    assert t95(freedom) == pytest.approx(stats.t.ppf(0.975, freedom), rel=0.002)
+    assert t95(freedom) == pytest.approx(stats.t.ppf(0.975, freedom))
 
 
 def test_one_robot_has_no_spread() -> None:
-    assert Spread.of([3]) == Spread(3.0, None, 3, 3)
+    assert Spread.of([3]) == Spread(3.0, None, 3, 3, 1)
 
 
 def test_no_robots_are_an_error() -> None:
@@ -76,22 +103,22 @@ def test_no_robots_are_an_error() -> None:
 
 @given(st.integers(1, 5000).flatmap(lambda n: st.tuples(st.integers(0, n), st.just(n))))
 def test_the_interval_of_a_share_is_scipys(share: tuple[int, int]) -> None:
-    theirs = stats.binomtest(*share).proportion_ci(0.95, method="wilson")
-    assert wilson(*share) == pytest.approx((theirs.low, theirs.high), abs=1e-12)
+    theirs = stats.binomtest(*share).proportion_ci(0.95, method="exact")
+    assert exact_interval(*share) == pytest.approx((theirs.low, theirs.high), abs=1e-9)
 
 
 def test_all_or_none_end_the_interval_and_nothing_leaves_it_open() -> None:
-    assert wilson(0, 7)[0] == 0.0
-    assert wilson(7, 7)[1] == 1.0
-    assert wilson(0, 0) == (0.0, 1.0)
+    assert exact_interval(0, 7) == pytest.approx((0.0, 1.0 - 0.025 ** (1 / 7)))
+    assert exact_interval(7, 7) == pytest.approx((0.025 ** (1 / 7), 1.0))
+    assert exact_interval(0, 0) == (0.0, 1.0)
 
 
-def test_wilson_s_interval_is_that_of_a_published_table() -> None:
-    """Newcombe 1998 (Statistics in Medicine 17), table I."""
+def test_the_exact_interval_is_that_of_a_published_table() -> None:
+    """Newcombe 1998 (Statistics in Medicine 17), table I, method 5."""
     for kind, n, low, high in (
-        (81, 263, 0.2553, 0.3662),
-        (15, 148, 0.0624, 0.1605),
-        (0, 20, 0.0, 0.1611),
-        (1, 29, 0.0061, 0.1718),
+        (81, 263, 0.2527, 0.3676),
+        (15, 148, 0.0578, 0.1617),
+        (0, 20, 0.0, 0.1684),
+        (1, 29, 0.0009, 0.1776),
     ):
-        assert wilson(kind, n) == pytest.approx((low, high), abs=5e-5)
+        assert exact_interval(kind, n) == pytest.approx((low, high), abs=5e-5)

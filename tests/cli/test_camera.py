@@ -29,9 +29,7 @@ from tests.cli.without import without
 ON_TABLE = {"puck": (-3.0, 22.4), "goal": (12.4, 22.4), "wrist": (0.0, 14.9)}
 """What lies where as a trial with the T-hook begins (in)."""
 MARKER = {"x_px", "y_px", "x_in", "y_in", "residual_x_px", "residual_y_px"}
-INSTALL = (
-    "affcli: the camera needs OpenCV, Pillow and SciPy; install them: pip install 'affcli[camera]'"
-)
+INSTALL = "affcli: the camera needs OpenCV and Pillow; install them: pip install 'affcli[camera]'"
 
 
 @pytest.fixture(scope="module")
@@ -311,7 +309,7 @@ def test_where_one_may_not_write_or_read_is_named(public: Path) -> None:
     assert names_in(public) == before
 
 
-@pytest.mark.parametrize("package", ["cv2", "PIL", "scipy"])
+@pytest.mark.parametrize("package", ["cv2", "PIL"])
 def test_without_its_packages_the_camera_says_what_to_install(package: str) -> None:
     assert without(package, "camera", "calibrate") == Ended(2, "", f"{INSTALL}\n")
 
@@ -334,7 +332,7 @@ def test_without_opencv_nothing_else_is_missed(shared: Path, tmp_path: Path) -> 
     assert rows(database, "SELECT status, calibration FROM learning_run") == [("done", None)]
 
 
-@pytest.mark.parametrize("package", ["cv2", "scipy"])
+@pytest.mark.parametrize("package", ["cv2", "PIL"])
 @pytest.mark.parametrize("command", [("solve", "--goal", "2"), ("break-tool",)])
 def test_without_its_packages_no_trial_through_the_camera_is_begun(
     package: str, command: tuple[str, ...], learned: Path

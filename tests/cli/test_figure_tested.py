@@ -83,7 +83,7 @@ def test_a_reproduction_of_few_robots_has_no_intervals(name: str, reproduced: Pa
         out = reproduced.with_name("f.png")
         said = figure(name, *session, "--db", reproduced, "--out", out, "--force")
         assert said.startswith(f"{name}, session 1: ")
-        assert "too few robots for intervals (20 or more)" in said
+        assert "too few robots for intervals (5 or more)" in said
 
 
 @pytest.mark.parametrize("steps", ["1", "1-2", "2-2"])

@@ -308,7 +308,7 @@ def test_a_half_finished_reproduction_is_shown_with_the_robots_that_are_saved(
     assert content.reproduction is not None
     assert content.reproduction.robots == 2
     assert {len(counts) for counts in content.reproduction.cells.values()} == {2}
-    assert "2 robots are too few to say." in render(content, "")
+    assert "2 robots are too few to say cell by cell" in render(content, "")
 
 
 def test_a_reproduction_without_a_robot_is_none(store: Store) -> None:

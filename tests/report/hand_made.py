@@ -309,12 +309,13 @@ FOUR_ROBOTS = Reproduction(
 
 MANY_ROBOTS = replace(
     FOUR_ROBOTS,
-    session=session_of(5, robots=20, settings='{"friction.tool_puck":0.45}'),
-    robots=20,
-    cells={cell: list(counts) * 5 for cell, counts in FOUR_ROBOTS.cells.items()},
-    broken=[14, 15, 15, 15] * 5,
+    session=session_of(5, robots=40, settings='{"friction.tool_puck":0.45}'),
+    robots=40,
+    cells={cell: list(counts) * 10 for cell, counts in FOUR_ROBOTS.cells.items()},
+    broken=[14, 15, 15, 15] * 10,
 )
-"""Enough robots for intervals; the paper's 16 with the broken tool and 69 of 80 lie outside."""
+"""Enough robots to hold the paper's counts against: 16 with the broken tool and 69 of 80 lie
+outside."""
 
 
 def by(run: int, tool: str, sensor: str = "noisy", planner: str = "nested-query") -> SolvedBy:

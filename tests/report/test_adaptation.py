@@ -15,12 +15,11 @@ from affcli.analysis.adaptation import (
     AdaptationCourse,
     MeanProbability,
     Share,
-    has_intervals,
     probabilities_of,
     share_interval,
     shares_of,
 )
-from affcli.analysis.statistics import wilson
+from affcli.analysis.statistics import exact_interval, t95
 from affcli.core.results import StepSums, TrialGroup
 from affcli.report.figures.adaptation import adaptation_figure
 from affcli.report.figures.canvas import BLUE, ONE_COLUMN, VERMILION, encoded
@@ -112,47 +111,51 @@ def test_trials_without_rows_on_the_missing_side_have_no_probability() -> None:
 @pytest.mark.parametrize(
     ("groups", "there_are"),
     [
-        (single(*[[(True, 0.0)]] * 16), True),
-        ([group_of([[(True, 0.0)]] * 16)] * 19, False),
-        ([group_of([[(True, 0.0)]] * 16)] * 20, True),
+        (single(*[[(True, -0.1)]] * 8, *[[(False, 0.0)]] * 8), True),
+        ([group_of([[(True, -0.1 * robot)]] * 16) for robot in range(4)], False),
+        ([group_of([[(True, -0.1 * robot)]] * 16) for robot in range(5)], True),
     ],
 )
-def test_intervals_are_over_trials_of_one_robot_or_over_enough_robots(
+def test_intervals_are_over_trials_of_one_robot_or_over_five_robots(
     groups: list[TrialGroup], there_are: bool
 ) -> None:
-    assert has_intervals(groups) == there_are
-    certain: list[Share | MeanProbability] = [*shares_of(groups), *probabilities_of(groups, 1)]
+    certain: list[Share | MeanProbability] = [*shares_of(groups), *probabilities_of(groups, 1)[1:]]
     for point in certain:
         assert (point.interval is not None) == there_are
+    assert probabilities_of(groups, 1)[0].interval is None  # all begin at 1
 
 
-@given(st.lists(st.tuples(st.integers(0, 16), st.just(16)), min_size=2, max_size=40))
+@given(st.lists(st.tuples(st.integers(0, 16), st.just(16)), min_size=5, max_size=40))
 def test_trials_that_share_a_robot_never_tell_more_than_as_many_that_do_not(
     groups: list[tuple[int, int]],
 ) -> None:
     kind, n = sum(k for k, _ in groups), sum(m for _, m in groups)
-    low, high = share_interval(groups)
-    alone = wilson(kind, n)
-    assert low <= alone[0] + 1e-12
-    assert high >= alone[1] - 1e-12
+    found = share_interval(groups)
+    assert found is not None
+    alone = exact_interval(kind, n)
+    assert found[0] <= alone[0] + 1e-9
+    assert found[1] >= alone[1] - 1e-9
 
 
-def test_robots_that_are_each_of_one_mind_count_as_one_trial_each() -> None:
+def test_robots_that_are_each_of_one_mind_count_as_less_than_one_trial_each() -> None:
+    """Their number less one, for the variance, and as much less as Student's t asks for."""
     agreed = [(16, 16)] * 10 + [(0, 16)] * 10
-    assert share_interval(agreed) == pytest.approx(wilson(9.5, 19))  # n / (n - 1) for the variance
-    assert share_interval([(8, 16)] * 20) == wilson(160, 320)
+    n = 19 * (t95(319) / t95(19)) ** 2
+    assert share_interval(agreed) == pytest.approx(exact_interval(n / 2, n))
+    assert share_interval([(8, 16)] * 20) == exact_interval(160, 320)
 
 
-def test_the_interval_holds_the_truth_as_often_as_it_says() -> None:
-    """Of 30 robots with 16 trials each, whose own shares lie around 0.4."""
+@pytest.mark.parametrize("robots", [5, 30])
+def test_the_interval_holds_the_truth_as_often_as_it_says(robots: int) -> None:
+    """Of robots with 16 trials each, whose own shares lie around 0.4."""
     rng = np.random.default_rng(0)
     held = 0
     for _ in range(2_000):
-        own = rng.beta(2.0, 3.0, size=30)
-        groups = [(int(k), 16) for k in rng.binomial(16, own)]
-        low, high = share_interval(groups)
-        held += low <= 0.4 <= high
-    assert 0.93 < held / 2_000 < 0.97
+        own = rng.beta(2.0, 3.0, size=robots)
+        found = share_interval([(int(k), 16) for k in rng.binomial(16, own)])
+        assert found is not None
+        held += found[0] <= 0.4 <= found[1]
+    assert 0.93 < held / 2_000 < 0.985
 
 
 GROUPS = single([(True, -0.1)], [(True, -0.1), (True, -0.1), (False, 0.0)])
@@ -203,7 +206,7 @@ def test_without_intervals_there_are_no_bands() -> None:
     assert not any(axes.collections for axes in adaptation_figure(few).axes)
     assert "95 % interval" not in words_of(few)
     assert (
-        "t-hook, broken: l-hook; 2 trials of 2 robots\ntoo few robots for intervals (20 or more)"
+        "t-hook, broken: l-hook; 2 trials of 2 robots\ntoo few robots for intervals (5 or more)"
     ) in words_of(few)
 
 

@@ -49,23 +49,25 @@ COMMAND = "affcli report --db my.db --html my.html"
 def test_whether_the_paper_s_table_is_reproduced() -> None:
     yes = replace(
         MANY_ROBOTS,
-        cells={cell: [paper] * 20 for cell, paper in EXTENSION_OF_REACH.items()},
+        cells={cell: [paper] * 40 for cell, paper in EXTENSION_OF_REACH.items()},
     )
     said = answers.reproduced(yes)
     assert said.startswith("Yes: in 20 of 20 cells the paper's count lies within the central 95 %")
-    assert "20 robots solve 69.0 of the 80 trials on average" in said
+    assert "40 robots solve 69.0 of the 80 trials on average" in said
     said = answers.reproduced(MANY_ROBOTS)
     # The stick's cells: 0, 1, 1, 2 of each four robots against the paper's 0, 2, 4, 4.
     assert said.startswith("Not wholly: in 18 of 20 cells ")
     assert "not so: stick at goal 3, stick at goal 4." in said
-    assert answers.reproduced(FOUR_ROBOTS).startswith("4 robots are too few to say. 4 robots solve")
+    assert answers.reproduced(FOUR_ROBOTS).startswith(
+        "4 robots are too few to say cell by cell (40 or more). 4 robots solve"
+    )
     one = replace(
         FOUR_ROBOTS,
         robots=1,
         cells={cell: counts[:1] for cell, counts in FOUR_ROBOTS.cells.items()},
         broken=[14],
     )
-    assert answers.reproduced(one).startswith("1 robot is too few to say.")
+    assert answers.reproduced(one).startswith("1 robot is too few to say cell by cell")
 
 
 def test_one_robot_cannot_tell() -> None:

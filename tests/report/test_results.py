@@ -82,7 +82,7 @@ def test_each_cell_has_the_paper_s_count_and_every_robot_s() -> None:
     for (tool, goal), cell in results.cells.items():
         assert cell.paper == EXTENSION_OF_REACH[tool, goal]
         assert cell.counts == MANY_ROBOTS.cells[tool, goal]
-        assert cell.spread == Spread.of(cell.counts)
+        assert cell.spread == Spread.of(cell.counts, 4)
     assert results.total is not None
     assert (results.total.paper, results.total.tried) == (TOTAL, 80)
     assert list(results.total.counts) == MANY_ROBOTS.totals
@@ -100,9 +100,8 @@ def test_the_figure_shows_means_intervals_and_the_paper_s_counts() -> None:
     for goal, axes in zip(GOALS, goals, strict=True):
         rows = [results.cells[tool, goal] for tool in TOOLS]
         assert [x for x, _ in marks(axes, VERMILION, "D")] == [cell.paper for cell in rows]
-        assert marks(axes, INK, "o") == [(cell.mean, y) for y, cell in enumerate(rows)]
+        assert marks(axes, INK, "o") == [(cell.spread.mean, y) for y, cell in enumerate(rows)]
         for y, cell in enumerate(rows):
-            assert cell.spread is not None
             assert bars(axes)[y] == pytest.approx((cell.spread.low, cell.spread.high), abs=0.03)
     for axes, counts, paper in ((total, MANY_ROBOTS.totals, 69), (broken, MANY_ROBOTS.broken, 16)):
         spread = Spread.of(counts)
@@ -124,12 +123,12 @@ def test_counts_of_the_paper_that_lie_outside_are_hollow() -> None:
     assert "the paper, outside the central 95 %" in words_in(figure)
 
 
-def test_intervals_are_for_twenty_robots_or_more() -> None:
-    """With fewer every robot is shown, in the size of how many gave the same."""
+def test_of_fewer_than_forty_robots_each_is_shown() -> None:
+    """In the size of how many gave the same; fewer than five have no interval."""
     figure = results_figure(results_of_many(FOUR_ROBOTS))
     words = words_in(figure)
-    assert not {"mean with its 95 % interval", "central 95 % of robots"} & words
-    assert any("too few robots for intervals (20 or more)" in text for text in words)
+    assert not {"mean with its 95 % interval, where it has one", "central 95 % of robots"} & words
+    assert any("too few robots for intervals (5 or more)" in text for text in words)
     counts = Counter(FOUR_ROBOTS.cells["stick", "1"])
     dots = {
         x: line.get_markersize()
@@ -150,16 +149,22 @@ def test_one_robot_is_a_dot() -> None:
     assert {"the paper", "one robot"} <= words_in(results_figure(results))
 
 
-@pytest.mark.parametrize("robots", [1, 2, 3, 19, 20, 31])
+@pytest.mark.parametrize("robots", [1, 2, 4, 5, 39, 40])
 def test_any_number_of_robots_can_be_drawn(robots: int) -> None:
     def repeated(counts: list[int]) -> list[int]:
-        return (counts * 8)[:robots]
+        return (counts * 10)[:robots]
 
     cells = {cell: repeated(list(counts)) for cell, counts in FOUR_ROBOTS.cells.items()}
     many = replace(FOUR_ROBOTS, robots=robots, cells=cells, broken=repeated([14, 15, 15, 16]))
     results = results_of_many(many)
-    assert (results.cells["stick", "1"].spread is None) == (robots < 20)
-    assert len(results_figure(results).axes) == 6
+    spread = results.cells["stick", "1"].spread
+    assert (spread.mean_ci is None, spread.holds(0) is None) == (robots < 5, robots < 40)
+    figure = results_figure(results)
+    assert len(figure.axes) == 6
+    words = words_in(figure)
+    assert ("mean with its 95 % interval, where it has one" in words) == (robots >= 5)
+    assert ("central 95 % of robots" in words) == (robots >= 40)
+    assert ("robots (area: how many)" in words) == (1 < robots < 40)
 
 
 def test_single_robots_have_what_they_tried() -> None:
@@ -213,7 +218,7 @@ def test_any_number_of_goals_and_tools_stands_in_rows_that_fit() -> None:
     assert all(box.width > 0.6 * figure.dpi < 1.2 * box.height for box in boxes[:-2])
 
 
-@pytest.mark.parametrize("robots", [2, 20])
+@pytest.mark.parametrize("robots", [2, 40])
 def test_each_panel_is_out_of_what_was_tried_in_it(robots: int) -> None:
     """A goal of many starts does not stretch the others; a row out of fewer says so."""
     cells = {

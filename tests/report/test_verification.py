@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from syrupy.assertion import SnapshotAssertion
 
-from affcli.analysis.statistics import wilson
+from affcli.analysis.statistics import exact_interval
 from affcli.analysis.verification import JudgedTry, Verification
 from affcli.behaviors.moving import CONTRACT_ARM, SLIDE_ARM_LEFT
 from affcli.core.affordance import PROBABILITY_THRESHOLD
@@ -97,10 +97,10 @@ def test_the_verdict_and_its_numbers_are_in_the_json() -> None:
 
 def test_groups_are_of_live_rows_with_their_intervals() -> None:
     value = verification_json(BROKEN)
-    low, high = wilson(3, 6)
+    low, high = exact_interval(3, 6)
     assert value["by_region"] == [
-        {"what": "left hook", "tries": 4, "replicated": 3, "low": wilson(3, 4)[0]}
-        | {"high": wilson(3, 4)[1]},
+        {"what": "left hook", "tries": 4, "replicated": 3, "low": exact_interval(3, 4)[0]}
+        | {"high": exact_interval(3, 4)[1]},
         {"what": "right hook", "tries": 6, "replicated": 3, "low": low, "high": high},
     ]
     assert [group["what"] for group in value["by_behavior"]] == [

@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     from affcli.report.figures import adaptation as adaptation
     from affcli.report.figures import affordances as affordances
     from affcli.report.figures import canvas as canvas
+    from affcli.report.figures import compare as compare
+    from affcli.report.figures import curve as curve
     from affcli.report.figures import learning as learning
     from affcli.report.figures import prediction as prediction
     from affcli.report.figures import results as results

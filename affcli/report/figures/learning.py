@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 
 from affcli.analysis.curves import Curve, ToolCurves
 from affcli.analysis.paper import in_papers_order
-from affcli.analysis.statistics import ENOUGH_ROBOTS
+from affcli.analysis.statistics import FEWEST
 from affcli.report.captions import run_name
 from affcli.report.figures.canvas import (
     BLUE,
@@ -29,7 +29,7 @@ from affcli.report.figures.canvas import (
 from affcli.report.figures.key import draw_key
 from affcli.report.figures.maps import columns_for
 from affcli.report.figures.words import tool_words
-from affcli.report.words import many
+from affcli.report.words import many, spread_words
 
 DASHES: tuple[Any, ...] = (
     "-",
@@ -43,8 +43,6 @@ COLORS = (BLUE, VERMILION, GREEN, PURPLE, INK, SKY)
 MARKERS = ("", "o")
 MOST_CURVES = len(COLORS) * len(MARKERS)
 """More than these nobody tells apart."""
-WHOLE_RANGE = 39
-"""Of so many robots or fewer the central 95 % is all of them."""
 NAMES = ("rows made", "share of behaviors\nwith an effect so far")
 NARROWEST = 1.1
 """Width of a panel (in)."""
@@ -120,9 +118,9 @@ def bands_figure(kinds: Sequence[ToolCurves], width: float | None = None) -> Fig
 def _bands_key(kinds: Sequence[ToolCurves]) -> list[tuple[Artist, str]]:
     """Return what stands for what, of all that is drawn."""
     entries: list[tuple[Artist, str]] = [(Line2D([], [], **MEAN), "mean of the robots")]
-    if any(kind.robots >= ENOUGH_ROBOTS for kind in kinds):
+    if any(kind.robots >= FEWEST for kind in kinds):
         entries.append((Patch(**CERTAIN), "95 % interval of the mean"))
-    spread = "range" if max(kind.robots for kind in kinds) <= WHOLE_RANGE else "central 95 %"
+    spread = spread_words(max(kind.robots for kind in kinds))
     return [*entries, (Patch(**ROBOTS), f"{spread} of the robots")]
 
 

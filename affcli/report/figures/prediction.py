@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullLocator
 
 from affcli.analysis.prediction import Push, Score, scores
-from affcli.analysis.statistics import wilson
+from affcli.analysis.statistics import exact_interval
 from affcli.report.figures.canvas import (
     BLUE,
     FAINT,
@@ -76,7 +76,7 @@ def _draw_shares(axes: Axes, growing: Sequence[Score]) -> None:
         ("false alarms", VERMILION, "s", [(s.false_alarms, s.still) for s in growing]),
     ):
         shares = [count / of if of else 0.0 for count, of in counts]
-        bounds = [wilson(count, of) for count, of in counts]
+        bounds = [exact_interval(count, of) for count, of in counts]
         below = [share - low for share, (low, _) in zip(shares, bounds, strict=True)]
         above = [high - share for share, (_, high) in zip(shares, bounds, strict=True)]
         axes.errorbar(

@@ -13,6 +13,7 @@ from matplotlib.ticker import MaxNLocator
 
 from affcli.analysis.comparison import Beside, Results
 from affcli.analysis.paper import STARTS, in_papers_order
+from affcli.analysis.statistics import ENOUGH_ROBOTS
 from affcli.report.figures.canvas import (
     FAINT,
     INK,
@@ -129,18 +130,19 @@ def _draw_rows(axes: Axes, rows: Mapping[str, Beside], most: int) -> None:
             )
         _draw_ours(axes, y, beside)
         if beside.counts and beside.tried != most:
-            words, spread = f"of {beside.tried}", beside.spread
-            at = (beside.mean if spread is None else spread.high, y)
-            axes.annotate(words, at, (4, 0), textcoords="offset points", va="center")
+            at = (beside.spread.high, y)
+            axes.annotate(f"of {beside.tried}", at, (4, 0), textcoords="offset points", va="center")
         if beside.paper is not None:
             fill = "white" if beside.outside else VERMILION
             axes.plot([beside.paper], [y - RAISED], **PAPER, markerfacecolor=fill, zorder=5)
 
 
 def _draw_ours(axes: Axes, y: float, beside: Beside) -> None:
-    """Draw our successes: mean and intervals, or each robot's when they are few."""
+    """Draw our successes: the mean with its interval, over the robots, or over each of few."""
+    if not beside.counts:
+        return
     spread = beside.spread
-    if spread is not None:
+    if spread.robots >= ENOUGH_ROBOTS:
         axes.plot(
             [spread.low - DOT, spread.high + DOT],
             [y, y],
@@ -148,18 +150,16 @@ def _draw_ours(axes: Axes, y: float, beside: Beside) -> None:
             linewidth=5.0,
             solid_capstyle="round",
         )
-        low, high = spread.mean_ci or (spread.mean, spread.mean)
-        axes.errorbar(
-            spread.mean, y, xerr=[[spread.mean - low], [high - spread.mean]],
-            fmt="o", markersize=2.6, color=INK, capsize=2.0, elinewidth=0.8, zorder=4,
-        )  # fmt: skip
-        return
-    if len(beside.counts) > 1:
+    elif spread.robots > 1:
         for count, robots in Counter(beside.counts).items():
-            size = 9.0 * (robots / len(beside.counts)) ** 0.5
+            size = 9.0 * (robots / spread.robots) ** 0.5
             axes.plot([count], [y], marker="o", markersize=size, color=SKY, zorder=3)
-    if beside.counts:
-        axes.plot([beside.mean], [y], marker="o", markersize=3.2, color=INK, zorder=4)
+    if spread.mean_ci is not None:
+        axes.errorbar(
+            *(sum(spread.mean_ci) / 2, y), xerr=(spread.mean_ci[1] - spread.mean_ci[0]) / 2,
+            fmt="none", color=INK, ecolor=INK, capsize=2.0, elinewidth=0.8, zorder=4,
+        )  # fmt: skip
+    axes.plot([spread.mean], [y], marker="o", markersize=2.6, color=INK, zorder=4)
 
 
 def _limits(beside: Beside) -> tuple[float, float]:
@@ -178,14 +178,16 @@ def _key(results: Results) -> list[tuple[Artist, str]]:
     if any(beside.outside for beside in every):
         mark = Line2D([], [], **PAPER, markerfacecolor="white")
         entries.append((mark, "the paper, outside the central 95 %"))
-    if any(beside.spread for beside in every):
-        mean = Line2D([], [], marker="o", markersize=2.6, color=INK, linewidth=0.8)
-        entries.append((mean, "mean with its 95 % interval"))
-        entries.append((Line2D([], [], color=SKY, linewidth=5.0), "central 95 % of robots"))
-        return entries
     dot: dict[str, Any] = {"marker": "o", "linestyle": "none"}
-    if results.robots > 1:
+    if any(beside.counts and beside.spread.mean_ci for beside in every):
+        mean = Line2D([], [], marker="o", markersize=2.6, color=INK, linewidth=0.8)
+        entries.append((mean, "mean with its 95 % interval, where it has one"))
+    else:
+        label = "mean" if results.robots > 1 else "one robot"
+        entries.append((Line2D([], [], **dot, markersize=2.6, color=INK), label))
+    if results.robots >= ENOUGH_ROBOTS:
+        entries.append((Line2D([], [], color=SKY, linewidth=5.0), "central 95 % of robots"))
+    elif results.robots > 1:
         robots = Line2D([], [], **dot, markersize=6.0, color=SKY)
         entries.append((robots, "robots (area: how many)"))
-    label = "mean" if results.robots > 1 else "one robot"
-    return [*entries, (Line2D([], [], **dot, markersize=3.2, color=INK), label)]
+    return entries

@@ -28,9 +28,6 @@ from affcli.report.page.drawings import sector
 from affcli.report.replaying import by_reason
 from affcli.report.words import many
 
-MANY_ROBOTS = 40
-"""With fewer, no robot lies outside the central 95 %."""
-
 
 def reproduced(result: Reproduction) -> str:
     """Return whether the paper's table is reproduced by many robots."""
@@ -39,14 +36,12 @@ def reproduced(result: Reproduction) -> str:
     outside = [
         f"{tool} at goal {goal}"
         for (tool, goal), counts in result.cells.items()
-        if not Spread.of(counts).holds(EXTENSION_OF_REACH[tool, goal])
+        if Spread.of(counts).holds(EXTENSION_OF_REACH[tool, goal]) is False
     ]
     numbers = _sums(result)
     if result.robots < ENOUGH_ROBOTS:
-        few = f"{result.robots} robot{'s are' if result.robots != 1 else ' is'} too few to say."
-        return f"{few} {numbers}"
-    if result.robots < MANY_ROBOTS:
-        numbers += " Of so few robots the central 95 % are all; what is rare may be missing."
+        few = f"{result.robots} robot{'s are' if result.robots != 1 else ' is'} too few to say"
+        return f"{few} cell by cell ({ENOUGH_ROBOTS} or more). {numbers}"
     cells = len(result.cells)
     inside = f"in {cells - len(outside)} of {cells} cells the paper's count lies within the central"
     if outside:
@@ -66,7 +61,7 @@ def _sums(result: Reproduction) -> str:
     if not result.totals:
         words = f"Not all of the paper's {TRIALS} trials were tried."
         return f"{words} With the broken tool {robots} {broken}." if broken else words
-    total = Spread.of(result.totals)
+    total = Spread.of(result.totals, TRIALS)
     ci = total.mean_ci
     mean = "" if ci is None else f" (95 % interval of the mean {ci[0]:.1f} to {ci[1]:.1f})"
     return (

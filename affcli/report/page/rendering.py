@@ -17,7 +17,6 @@ from affcli.analysis.paper import (
     row_name,
 )
 from affcli.analysis.reproduction import failures_in
-from affcli.analysis.statistics import ENOUGH_ROBOTS
 from affcli.core.replay import Replay
 from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome
@@ -29,7 +28,15 @@ from affcli.report.prediction import predictions_table
 from affcli.report.reproduction import reproduction_json
 from affcli.report.sheet import Sheet
 from affcli.report.verification import verifications_table
-from affcli.report.words import call_words, clock, in_order, run_words, unknown_shapes
+from affcli.report.words import (
+    call_words,
+    clock,
+    few_robots_note,
+    in_order,
+    run_words,
+    spread_words,
+    unknown_shapes,
+)
 
 HOME = "affcli.report.page"
 """Where template, style sheet and scripts lie."""
@@ -177,7 +184,6 @@ def _results(content: Content) -> dict[str, Any]:
             **shared,
             "result": None,
             "results_answer": answers.solved_by_one(content.replays),
-            "enough": False,
             "failures": failed.kinds.items(),
             "failed_of": failed.trials,
             "invalid": failed.invalid,
@@ -192,7 +198,8 @@ def _results(content: Content) -> dict[str, Any]:
         "results_answer": answers.reproduced(content.reproduction),
         "by_tool": by_tool.items(),
         "settings": run_words(content.reproduction.session.spec),
-        "enough": content.reproduction.robots >= ENOUGH_ROBOTS,
+        "within": spread_words(content.reproduction.robots),
+        "few": few_robots_note(content.reproduction.robots),
         "failures": result["failures"].items(),
         "failed_of": result["trials"],
         "invalid": result["invalid"],

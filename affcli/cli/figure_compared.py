@@ -1,0 +1,71 @@
+"""``affcli figure compare`` and ``curve``: conditions beside each other."""
+
+from functools import partial
+from typing import Annotated
+
+import typer
+
+from affcli import lab
+from affcli.cli.compare import Against, By, Sessions, conditions_named
+from affcli.cli.database import opened
+from affcli.cli.figure import Figure, figure
+from affcli.cli.options import DEFAULT_DATABASE, Database
+from affcli.errors import UsageError
+from affcli.report import figures
+from affcli.report.captions import comparison_words, conditions_words
+
+MOST_COURSES = 6
+"""Conditions that a figure of curves tells apart."""
+
+
+@figure
+def compare(
+    *,
+    sessions: Sessions = None,
+    against: Against = None,
+    by: By = "tool,goal",
+    database: Database = DEFAULT_DATABASE,
+) -> Figure:
+    """Draw differences between conditions with their intervals.
+
+    What `affcli compare` says, a row a cell: filled where significant after the correction.
+    """
+    with opened(database) as store:
+        conditions = conditions_named(store, sessions, 2)
+        if len(conditions) > 1 + figures.compare.MOST_CONDITIONS:
+            most = figures.compare.MOST_CONDITIONS
+            raise UsageError(f"--session: {most} conditions beside the first fit; name fewer")
+        result = lab.conditions.compared(store, conditions, against, by)
+    return Figure(comparison_words(result), partial(figures.compare.compare_figure, result))
+
+
+@figure
+def curve(
+    *,
+    sessions: Sessions = None,
+    y: Annotated[
+        str, typer.Option("--y", help="solved, rows or share.", metavar="MEASURE")
+    ] = "solved",
+    x: Annotated[
+        str | None,
+        typer.Option(
+            "--x",
+            help="minutes, rows or a setting; else the setting that differs.",
+            metavar="AXIS",
+        ),
+    ] = None,
+    database: Database = DEFAULT_DATABASE,
+) -> Figure:
+    """Draw a measure of conditions against robot time, rows or a swept setting.
+
+    Solved trials, rows of a table, or the share of behaviors with an effect; the mean of the robots
+    with its 95 % interval. Rows and share are followed over minutes or rows; against a setting each
+    condition is a point.
+    """
+    with opened(database) as store:
+        conditions = conditions_named(store, sessions, 1)
+        if len(conditions) > MOST_COURSES:
+            raise UsageError(f"--session: {MOST_COURSES} conditions fit; name fewer")
+        found = lab.courses.curves_of(store, conditions, y, x)
+    words = conditions_words(f"{found.y} against {found.x}", conditions)
+    return Figure(words, partial(figures.curve.curve_figure, found.lines, found.x, found.y))

@@ -1,0 +1,124 @@
+"""Conditions read from a store: what their robots solved, compared, planned with and followed."""
+
+import pytest
+
+from affcli.core.results import Cell
+from affcli.errors import UsageError
+from affcli.lab.conditions import compared, counts_of, planned, sessions_named
+from affcli.lab.courses import curves_of
+from affcli.store import Store
+from tests.store.conditions import SECOND, stored_conditions
+from tests.store.records import begun
+
+REACH, ADAPTATION, TASKS = "extension of reach", "tool adaptation", "extension-of-reach"
+ALL = Cell(REACH, TASKS)
+STICK, HOOK = (Cell(REACH, TASKS, tool, tool, "1") for tool in ("stick", "t-hook"))
+BROKEN = Cell(ADAPTATION, TASKS, "t-hook", "l-hook", "1")
+
+
+def test_what_each_robot_solved_of_each_cell(store: Store) -> None:
+    (first, *_) = sessions_named(store, stored_conditions(store))
+    counts = counts_of(store, first, ("tool", "goal"))
+    assert list(counts.cells) == [STICK, HOOK, BROKEN]
+    assert counts.cells[STICK] == {r: (2, 1 if r < SECOND else 2) for r in range(8)}
+    assert counts.cells[HOOK] == dict.fromkeys(range(8), (2, 1))
+    assert counts.cells[BROKEN] == dict.fromkeys(range(8), (1, 1))
+    by_start = counts_of(store, first, ("start",)).cells
+    assert by_start[ALL._replace(start="2")] == {r: (2, int(r >= SECOND)) for r in range(8)}
+    assert list(counts_of(store, first, ("task", "protocol")).cells) == [
+        ALL,
+        Cell(ADAPTATION, TASKS),
+    ]
+
+
+def test_robots_are_compared_with_the_first_condition_or_with_one_that_is_named(
+    store: Store,
+) -> None:
+    conditions = sessions_named(store, stored_conditions(store))
+    result = compared(store, conditions, None, ("tool",))
+    assert [other.name for other in result.others] == ["session 2", "session 3"]
+    (one,) = result.cells
+    assert (one.condition, one.cell) == ("session 2", STICK._replace(goal=""))
+    assert (one.mean, one.better, one.worse) == (SECOND / 8, SECOND, 0)
+    assert one.p == 2 * 0.5**SECOND
+    assert result.left_out == {"session 2": (8,), "session 3": (8, 9)}
+    again = compared(store, conditions, "session 2", ("tool",))
+    assert again.against.name == "session 2"
+    assert [(d.condition, d.worse) for d in again.cells] == [("session 1", 4), ("session 3", 4)]
+    with pytest.raises(UsageError, match="no condition 'session 9'; did you mean session"):
+        compared(store, conditions, "session 9", ("tool",))
+
+
+def test_what_cannot_be_compared_is_named(store: Store) -> None:
+    first, *_ = stored_conditions(store, 2, conditions=2)
+    elsewhere = begun(store, "reproduce", seed=8)
+    store.sessions.finish(elsewhere, "2026-01-02T03:04:05+00:00")
+    with pytest.raises(UsageError, match="no robot in common: they are of seeds 7 and 8"):
+        compared(store, sessions_named(store, [first, elsewhere]), None, ())
+    with pytest.raises(UsageError, match="--session 1: named twice"):
+        sessions_named(store, [first, first])
+    solving = begun(store, "solve")
+    with pytest.raises(UsageError, match="is of affcli solve, not of reproduce"):
+        sessions_named(store, [first, solving])
+    unfinished = begun(store, "reproduce", seed=9)
+    with pytest.raises(UsageError, match="is not finished"):
+        sessions_named(store, [first, unfinished])
+
+
+def test_robots_needed_are_told_from_pairs_or_from_one_condition(store: Store) -> None:
+    conditions = sessions_named(store, stored_conditions(store))
+    plans, untold = planned(store, conditions[:2], ("tool",), (1.0,), 0.0, 0.8)
+    assert [(one.cell, one.robots) for one in plans] == [(ALL, 8), (STICK._replace(goal=""), 8)]
+    assert [one.level for one in plans] == [0.05, 0.05 / 3]
+    assert Cell(ADAPTATION, TASKS) in untold
+    assert plans[0].spread == pytest.approx(0.5345, abs=1e-4)
+    (alone, *_), _ = planned(store, conditions[:1], ("protocol",), (1.0,), 0.5, 0.8)
+    assert alone.spread == pytest.approx(0.5345, abs=1e-4)
+    (apart, *_), _ = planned(store, conditions[:1], ("protocol",), (1.0,), 0.0, 0.8)
+    assert (apart.needed[1.0] or 0) > (alone.needed[1.0] or 0)
+
+
+def test_a_setting_that_differs_is_the_axis_of_the_curve(store: Store) -> None:
+    conditions = sessions_named(store, stored_conditions(store))
+    found = curves_of(store, conditions, "solved", None)
+    assert (found.x, found.y) == ("sensor.position_noise (in)", "solved trials")
+    reach, broken = found.lines
+    assert (reach.panel, broken.panel) == (f"{REACH}, of 4", f"{ADAPTATION}, of 1")
+    assert [point.x for point in reach.points] == [0.008, 0.06, 0.25]
+    assert [point.mean for point in reach.points] == [2.5, 3.0, 2.6]
+    assert [point.robots for point in reach.points] == [8, 9, 10]
+    assert curves_of(store, conditions, "solved", "sensor.position_noise") == found
+    (rows,) = curves_of(store, conditions, "rows", "sensor.position_noise").lines
+    assert [point.mean for point in rows.points] == [20.0] * 3
+
+
+def test_courses_follow_robots_over_minutes_or_rows(store: Store) -> None:
+    conditions = sessions_named(store, stored_conditions(store))
+    for x in ("minutes", "rows"):
+        for y in ("rows", "share"):
+            found = curves_of(store, conditions, y, x)
+            assert [line.name for line in found.lines] == ["session 1", "session 2", "session 3"]
+            for line in found.lines:
+                xs = [point.x for point in line.points]
+                assert xs == sorted(xs)
+                assert len(xs) > 10
+                assert all(0.0 <= p.mean <= (1.0 if y == "share" else 20.0) for p in line.points)
+    (solved, _) = curves_of(store, conditions[:1], "solved", "rows").lines
+    assert [point.x for point in solved.points] == [20.0]
+
+
+@pytest.mark.parametrize(
+    ("y", "x", "refusal"),
+    [
+        ("height", None, "no measure 'height'"),
+        ("solved", "sensor.positon_noise", "no axis .*; did you mean sensor.position_noise"),
+        ("solved", "trial.max_steps", "is 60 in more than one condition; it differs: sensor.pos"),
+        ("solved", "sensor.kind", "sensor.kind is no number"),
+    ],
+)
+def test_what_a_curve_cannot_show_is_named(
+    store: Store, y: str, x: str | None, refusal: str
+) -> None:
+    conditions = sessions_named(store, stored_conditions(store, 1))
+    with pytest.raises(UsageError, match=refusal):
+        curves_of(store, conditions, y, x)
