@@ -135,9 +135,7 @@ Database = Annotated[
 ]
 DEFAULT_DATABASE = Path("affcli.db")
 
-AsJson = Annotated[
-    bool, typer.Option("--json", help="Write JSON to stdout; integers from 2^53 on as text.")
-]
+AsJson = Annotated[bool, typer.Option("--json", help="Results as JSON: command, format, results.")]
 Seed = Annotated[
     int, typer.Option("--seed", help="0 to 2^63 - 1.", metavar="N", callback=checked_seed)
 ]
