@@ -1,5 +1,7 @@
 """The ``affcli`` program: its help, and how the command that was given is found."""
 
+import shutil
+from functools import partial
 from importlib import import_module
 from typing import Any
 
@@ -8,8 +10,36 @@ from typer.core import TyperCommand, TyperGroup
 
 from affcli import __version__
 from affcli.cli.commands import SECTIONS, Command, Group
-from affcli.cli.terminal import answer_as, show_text
+from affcli.cli.terminal import NARROWEST, answer_as, show_text
 from affcli.errors import UsageError
+
+WIDEST_HELP = 80
+WIDEST_OPTION = 30
+"""Columns of help, and of the options in it, beside which their meaning stands."""
+
+
+class Fitting:
+    """A command whose help is no wider than the terminal."""
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Write the help, narrower than the 50 columns that the formatter would not go below."""
+        columns = min(shutil.get_terminal_size().columns, WIDEST_HELP)
+        formatter.width = max(NARROWEST, columns) - 2
+        options = min(WIDEST_OPTION, formatter.width * 2 // 5)
+        formatter.write_dl = partial(formatter.write_dl, col_max=options)
+        super().format_help(ctx, formatter)  # type: ignore[misc]  # of a command
+
+
+class LoadedCommand(Fitting, TyperCommand):
+    """A command that can be run; its help ends with an example."""
+
+    example = ""
+
+    def format_epilog(self, ctx: Any, formatter: Any) -> None:
+        """Write the example."""
+        del ctx
+        with formatter.section("Example"):
+            formatter.write_text(self.example)
 
 
 class LazyCommand(TyperCommand):
@@ -22,6 +52,7 @@ class LazyCommand(TyperCommand):
     def __init__(self, command: Command) -> None:
         super().__init__(command.name, short_help=command.help, rich_markup_mode=None)
         self._home = command.home
+        self._example = command.example
 
     def loaded(self) -> Any:
         """Import the command's module and return the command, with its options."""
@@ -29,8 +60,11 @@ class LazyCommand(TyperCommand):
         single = typer.Typer(
             add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None
         )
-        single.command(self.name)(getattr(import_module(f"affcli.cli.{module}"), function))
-        return typer.main.get_command(single)
+        home = import_module(f"affcli.cli.{module}")
+        single.command(self.name, cls=LoadedCommand)(getattr(home, function))
+        loaded: Any = typer.main.get_command(single)
+        loaded.example = self._example
+        return loaded
 
     def make_context(self, *args: Any, **kwargs: Any) -> Any:
         """Make the context of the imported command."""
@@ -39,7 +73,7 @@ class LazyCommand(TyperCommand):
         return context
 
 
-class CommandGroup(TyperGroup):
+class CommandGroup(Fitting, TyperGroup):
     """A word with commands under it, which says what they are when none was given."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:

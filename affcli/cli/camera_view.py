@@ -34,7 +34,7 @@ Trial = Annotated[
         "--trial",
         help="A trial's id in the database.",
         metavar="ID",
-        callback=check_count("--trial"),
+        parser=check_count("--trial"),
     ),
 ]
 Step = Annotated[
@@ -43,7 +43,7 @@ Step = Annotated[
         "--step",
         help="Step of the trial, or behavior of the run.",
         metavar="N",
-        callback=check_count("--step"),
+        parser=check_count("--step"),
     ),
 ]
 After = Annotated[bool, typer.Option("--after", help="After the behavior, not before it.")]

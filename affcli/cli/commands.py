@@ -10,12 +10,14 @@ class Command(NamedTuple):
         name: the word that calls it.
         home: its module in this room and its function there, ``module:function``.
         help: what it does, in one sentence: the first line of the function's docstring.
+        example: a call of it, as its row of the README has it.
         goes_on: given again after an interruption, it goes on from what was saved.
     """
 
     name: str
     home: str
     help: str
+    example: str
     goes_on: bool = False
 
 
@@ -35,11 +37,20 @@ CAMERA = Group(
             "calibrate",
             "camera_calibrate:calibrate",
             "Calibrate a camera from a picture of markers.",
+            "affcli camera calibrate --out camera.json",
         ),
         Command(
-            "locate", "camera_locate:locate", "Say where a picture shows what is colour-coded."
+            "locate",
+            "camera_locate:locate",
+            "Say where a picture shows what is colour-coded.",
+            "affcli camera locate picture.png --calibration camera.json",
         ),
-        Command("view", "camera_view:view", "Show what the camera sees and how it is segmented."),
+        Command(
+            "view",
+            "camera_view:view",
+            "Show what the camera sees and how it is segmented.",
+            "affcli camera view --out view.png",
+        ),
     ),
 )
 
@@ -47,13 +58,29 @@ DB = Group(
     "db",
     "Check, copy and upgrade the database file.",
     (
-        Command("upgrade", "db:upgrade", "Bring the schema of an older database up to date."),
-        Command("backup", "db:backup", "Write a checked copy of the database."),
-        Command("check", "db:check", "Check that everything in the database is as it must be."),
+        Command(
+            "upgrade",
+            "db:upgrade",
+            "Bring the schema of an older database up to date.",
+            "affcli db upgrade",
+        ),
+        Command(
+            "backup",
+            "db:backup",
+            "Write a checked copy of the database.",
+            "affcli db backup --out copy.db",
+        ),
+        Command(
+            "check",
+            "db:check",
+            "Check that everything in the database is as it must be.",
+            "affcli db check",
+        ),
         Command(
             "info",
             "db:info",
             "Show schema revision, size, journal mode, and how many rows each table has.",
+            "affcli db info",
         ),
     ),
 )
@@ -66,30 +93,55 @@ FIGURE = Group(
             "affordances",
             "figure_learned:affordances",
             "Draw what a tool affords, as arrows over its outline.",
+            "affcli figure affordances --out fig6.pdf",
         ),
-        Command("row", "figure_learned:row", "Draw one row of an affordance table."),
+        Command(
+            "row",
+            "figure_learned:row",
+            "Draw one row of an affordance table.",
+            "affcli figure row 17 --out fig5.pdf",
+        ),
         Command(
             "workspace",
             "figure_learned:workspace",
             "Draw the table: goals, starts, tool, reach of the arm.",
+            "affcli figure workspace --out fig8.pdf",
         ),
         Command(
-            "tools", "figure_learned:tools", "Draw the five tools to scale, and one that broke."
+            "tools",
+            "figure_learned:tools",
+            "Draw the five tools to scale, and one that broke.",
+            "affcli figure tools --out fig9.pdf",
         ),
-        Command("learning", "figure_learned:learning", "Draw how learning went over robot time."),
         Command(
-            "trial", "figure_tested:trial", "Draw a trial as a film strip, as in Figures 10 and 11."
+            "learning",
+            "figure_learned:learning",
+            "Draw how learning went over robot time.",
+            "affcli figure learning --out learning.pdf",
         ),
-        Command("results", "figure_tested:results", "Draw our intervals with the paper's counts."),
+        Command(
+            "trial",
+            "figure_tested:trial",
+            "Draw a trial as a film strip, as in Figures 10 and 11.",
+            "affcli figure trial 11 --out trial.pdf",
+        ),
+        Command(
+            "results",
+            "figure_tested:results",
+            "Draw our intervals with the paper's counts.",
+            "affcli figure results --out results.pdf",
+        ),
         Command(
             "adaptation",
             "figure_tested:adaptation",
             "Draw how robots adapt to a broken tool, step by step.",
+            "affcli figure adaptation --out adaptation.pdf",
         ),
         Command(
             "prediction",
             "figure_prediction:prediction",
             "Draw how well a table predicts fresh pushes.",
+            "affcli figure prediction --out prediction.pdf",
         ),
         Command(
             "compare",
@@ -108,14 +160,25 @@ RUNS = Group(
     "runs",
     "List what was learned, run by run; write notes; delete.",
     (
-        Command("list", "runs:list_runs", "List the learning runs, with their notes."),
-        Command("show", "runs:show_run", "Show one learning run in full."),
+        Command(
+            "list",
+            "runs:list_runs",
+            "List the learning runs, with their notes.",
+            "affcli runs list",
+        ),
+        Command("show", "runs:show_run", "Show one learning run in full.", "affcli runs show 1"),
         Command(
             "note",
             "runs:note_run",
             "Write a note on a learning run, in place of the one it has.",
+            'affcli runs note 1 "low friction"',
         ),
-        Command("delete", "runs:delete_run", "Delete a learning run and all that belongs to it."),
+        Command(
+            "delete",
+            "runs:delete_run",
+            "Delete a learning run and all that belongs to it.",
+            "affcli runs delete ID",
+        ),
     ),
 )
 
@@ -123,12 +186,18 @@ TABLE = Group(
     "table",
     "Look at the rows of the affordance tables, and take them out.",
     (
-        Command("list", "table_list:list_rows", "List rows of the affordance tables."),
-        Command("show", "table_show:show_row", "Show one row in full."),
+        Command(
+            "list",
+            "table_list:list_rows",
+            "List rows of the affordance tables.",
+            "affcli table list --tool t-hook",
+        ),
+        Command("show", "table_show:show_row", "Show one row in full.", "affcli table show 17"),
         Command(
             "export",
             "table_export:export",
             "Write rows of the affordance tables for other programs.",
+            "affcli table export --out rows.csv",
         ),
     ),
 )
@@ -139,28 +208,38 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
             "learn",
             "learn:learn",
             "Let a robot babble with a tool and fill its affordance table.",
+            "affcli learn --tool t-hook",
             goes_on=True,
         ),
         Command(
             "solve",
             "solve:solve",
             "Bring the attractor over a goal region with the tables that were learned.",
+            "affcli solve --goal 2 --explain",
         ),
         Command(
             "break-tool",
             "break_tool:break_tool",
             "Use a broken tool with the table of the whole one: 4 goals x 4 starts.",
+            "affcli break-tool",
         ),
-        Command("verify", "verify:verify", "Let the robot test its own table: does it still hold?"),
+        Command(
+            "verify",
+            "verify:verify",
+            "Let the robot test its own table: does it still hold?",
+            "affcli verify",
+        ),
         Command(
             "predict",
             "predict:predict",
             "Predict fresh pushes with a table, and see how often it is right.",
+            "affcli predict",
         ),
         Command(
             "reproduce",
             "reproduce:reproduce",
             "Reproduce the paper with many robots: five tools, 80 + 16 trials each.",
+            "affcli reproduce --robots 20 --db reproduce.db",
             goes_on=True,
         ),
     ),
@@ -170,6 +249,7 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
             "report:report",
             "Show tools learned, rows by behavior, trials beside the paper's, and failures by "
             "kind.",
+            "affcli report",
         ),
         Command("compare", "compare:compare", "Compare conditions robot by robot: did it matter?"),
         Command("power", "power:power", "Say how many robots it takes to see a difference."),
@@ -177,6 +257,7 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
             "replay",
             "replay:replay",
             "Replay a stored trial step by step, and compare it with its record.",
+            "affcli replay 11",
         ),
         FIGURE,
         TABLE,
@@ -184,21 +265,35 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
     ),
     "Data": (
         RUNS,
-        Command("sql", "sql:sql", "Ask the database one question in SQL."),
+        Command(
+            "sql", "sql:sql", "Ask the database one question in SQL.", 'affcli sql "select ..."'
+        ),
         DB,
-        Command("doctor", "doctor:doctor", "Say whether everything is here that affcli needs."),
-        Command("cite", "cite:cite", "Say how to cite the paper and this software, in BibTeX."),
+        Command(
+            "doctor",
+            "doctor:doctor",
+            "Say whether everything is here that affcli needs.",
+            "affcli doctor",
+        ),
+        Command(
+            "cite",
+            "cite:cite",
+            "Say how to cite the paper and this software, in BibTeX.",
+            "affcli cite",
+        ),
     ),
     "Extend": (
         Command(
             "list",
             "list_parts:list_parts",
             "List the parts that a run can be made of: what each is, its parameters, its source.",
+            "affcli list planners",
         ),
         Command(
             "settings",
             "settings:settings",
             "Show all settings: what each means, its default, its unit and what it may be.",
+            "affcli settings",
         ),
     ),
 }

@@ -36,29 +36,51 @@ from affcli.errors import BadInputError, UsageError
 from affcli.report.learning import groups_json, groups_table, run_json, summary
 from affcli.simulation.tools.paper import TOOL_PARTS
 
+AllTools = Annotated[bool, typer.Option("--all-tools", help="The paper's five tools.")]
+Hours = Annotated[
+    float | None,
+    typer.Option(
+        "--hours",
+        help="Robot hours; 1 if not given.",
+        metavar="H",
+        callback=check_if_given(checked_hours),
+    ),
+]
+Behaviors = Annotated[
+    int | None,
+    typer.Option(
+        "--behaviors",
+        help="Instead of hours.",
+        metavar="N",
+        parser=check_count("--behaviors", MOST_BEHAVIORS),
+    ),
+]
+Workers = Annotated[
+    int,
+    typer.Option(
+        "--workers",
+        help="Processes, when there are several tools.",
+        metavar="N",
+        parser=check_count("--workers", MOST_WORKERS),
+    ),
+]
+Note = Annotated[
+    str | None,
+    typer.Option(
+        "--note",
+        help="What you want to remember of it.",
+        metavar="TEXT",
+        callback=check_if_given(checked_note),
+    ),
+]
+
 
 def learn(
     *,
     tool: Tools = None,
-    all_tools: Annotated[bool, typer.Option("--all-tools", help="The paper's five tools.")] = False,
-    hours: Annotated[
-        float | None,
-        typer.Option(
-            "--hours",
-            help="Robot hours; 1 if not given.",
-            metavar="H",
-            callback=check_if_given(checked_hours),
-        ),
-    ] = None,
-    behaviors: Annotated[
-        int | None,
-        typer.Option(
-            "--behaviors",
-            help="Instead of hours.",
-            metavar="N",
-            callback=check_count("--behaviors", MOST_BEHAVIORS),
-        ),
-    ] = None,
+    all_tools: AllTools = False,
+    hours: Hours = None,
+    behaviors: Behaviors = None,
     seed: Seed = 0,
     repertoire: Repertoire = None,
     binding: Binding = None,
@@ -66,24 +88,8 @@ def learn(
     sensor: Sensor = None,
     world: World = None,
     resume: Resume = False,
-    workers: Annotated[
-        int,
-        typer.Option(
-            "--workers",
-            help="Processes, when there are several tools.",
-            metavar="N",
-            callback=check_count("--workers", MOST_WORKERS),
-        ),
-    ] = 1,
-    note: Annotated[
-        str | None,
-        typer.Option(
-            "--note",
-            help="What you want to remember of it.",
-            metavar="TEXT",
-            callback=check_if_given(checked_note),
-        ),
-    ] = None,
+    workers: Workers = 1,
+    note: Note = None,
     database: Database = DEFAULT_DATABASE,
     config: Config = None,
     changes: Changes = None,

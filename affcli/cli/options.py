@@ -20,7 +20,7 @@ from affcli.core.limits import LARGEST_SEED, LONGEST_HOURS, LONGEST_NOTE
 from affcli.core.names import one_of
 from affcli.core.observation import SENSOR_KINDS, SensorKind
 from affcli.core.part import Kind
-from affcli.errors import BadInputError, one_line
+from affcli.errors import BadInputError, UsageError, one_line
 
 LARGEST_ID = LARGEST_SEED
 MOST_TRIES = 100_000
@@ -36,8 +36,20 @@ def checked_sensor(kind: str) -> SensorKind:
     return one_of("sensor", kind, SENSOR_KINDS)
 
 
-def checked_seed(seed: int) -> int:
+def whole_number(option: str, text: object) -> int:
+    """Return a whole number; UsageError for what is none.
+
+    Typer's own reading takes 0-9 for -9.
+    """
+    try:
+        return int(str(text))
+    except ValueError:
+        raise UsageError(f"{option} {one_line(text, 40)}: must be a whole number") from None
+
+
+def checked_seed(text: str) -> int:
     """Return the seed; BadInputError when it does not lie in 0 to 2^63 - 1."""
+    seed = whole_number("--seed", text)
     if not 0 <= seed <= LARGEST_SEED:
         raise BadInputError(f"--seed {one_line(seed, 40)}: must lie in 0 to 2^63 - 1")
     return seed
@@ -118,8 +130,8 @@ def check_if_given(check: Callable[[Any], Any]) -> Callable[[Any], Any]:
 
 
 def check_count(option: str, most: int = LARGEST_ID) -> Callable[[Any], Any]:
-    """Return a check for an option that is a count, or a number in the database."""
-    return check_if_given(lambda count: checked_count(option, count, most))
+    """Return what reads and checks an option that is a count, or a number in the database."""
+    return check_if_given(lambda text: checked_count(option, whole_number(option, text), most))
 
 
 def names_of(kind: Kind) -> Callable[[str], list[str]]:
@@ -147,11 +159,9 @@ Database = Annotated[
 ]
 DEFAULT_DATABASE = Path("affcli.db")
 
-AsJson = Annotated[
-    bool, typer.Option("--json", help="Write JSON to stdout; integers from 2^53 on as text.")
-]
+AsJson = Annotated[bool, typer.Option("--json", help="Results as JSON: command, format, results.")]
 Seed = Annotated[
-    int, typer.Option("--seed", help="0 to 2^63 - 1.", metavar="N", callback=checked_seed)
+    int, typer.Option("--seed", help="0 to 2^63 - 1.", metavar="N", parser=checked_seed)
 ]
 Config = Annotated[
     Path | None,
@@ -269,12 +279,12 @@ HeldShape = Annotated[
 Pushes = Annotated[
     int,
     typer.Option(
-        "--pushes", help="How many.", metavar="N", callback=check_count("--pushes", MOST_TRIES)
+        "--pushes", help="How many.", metavar="N", parser=check_count("--pushes", MOST_TRIES)
     ),
 ]
 Run = Annotated[
     int | None,
     typer.Option(
-        "--run", help="The learning run of this id.", metavar="ID", callback=check_count("--run")
+        "--run", help="The learning run of this id.", metavar="ID", parser=check_count("--run")
     ),
 ]

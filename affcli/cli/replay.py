@@ -60,7 +60,7 @@ all."""
 Trial = Annotated[
     int | None,
     typer.Argument(
-        help="A trial's id in the database.", metavar="TRIAL", callback=check_count("TRIAL")
+        help="A trial's id in the database.", metavar="TRIAL", parser=check_count("TRIAL")
     ),
 ]
 All = Annotated[bool, typer.Option("--all", help="Every trial: say only whether it is the same.")]

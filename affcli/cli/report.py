@@ -45,7 +45,7 @@ Runs = Annotated[
 Session = Annotated[
     int | None,
     typer.Option(
-        "--session", help="Which reproduction.", metavar="ID", callback=check_count("--session")
+        "--session", help="Which reproduction.", metavar="ID", parser=check_count("--session")
     ),
 ]
 

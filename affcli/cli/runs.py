@@ -21,7 +21,7 @@ from affcli.report.runs import (
 )
 
 RunId = Annotated[
-    int, typer.Argument(help="Its id in the database.", metavar="ID", callback=check_count("run"))
+    int, typer.Argument(help="Its id in the database.", metavar="ID", parser=check_count("run"))
 ]
 
 

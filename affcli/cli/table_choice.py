@@ -31,7 +31,7 @@ Run = Annotated[
         "--run",
         help="Of this learning run, not the latest ones.",
         metavar="ID",
-        callback=check_count("--run"),
+        parser=check_count("--run"),
     ),
 ]
 AllRuns = Annotated[
@@ -62,7 +62,7 @@ Limit = Annotated[
         "--limit",
         help="No more than so many, the oldest.",
         metavar="N",
-        callback=check_count("--limit"),
+        parser=check_count("--limit"),
     ),
 ]
 

@@ -15,7 +15,7 @@ from affcli.report.rows import row_json, row_tables
 def show_row(
     row_id: Annotated[
         int,
-        typer.Argument(help="Its id in the database.", metavar="ID", callback=check_count("row")),
+        typer.Argument(help="Its id in the database.", metavar="ID", parser=check_count("row")),
     ],
     *,
     database: Database = DEFAULT_DATABASE,

@@ -6,10 +6,11 @@ import os
 import sys
 import time
 from collections import deque
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 from affcli.errors import AffcliError, one_line
@@ -25,6 +26,7 @@ JSON_FORMAT = 1
 """Of what `show_json` writes: raised when a key gets another name or meaning, or is no more."""
 NARROWEST = 20
 """A terminal of fewer columns is written to as if it had these."""
+WIDE_ENOUGH_FOR_BARS = 72
 _command = ""
 
 
@@ -52,7 +54,21 @@ def now() -> str:
 
 def say(message: str) -> None:
     """Write a message to stderr."""
-    _write(sys.stderr, f"{message}\n")
+    _write(sys.stderr, f"{_fitting(message)}\n")
+
+
+def _fitting(message: str) -> str:
+    """Return a message for stderr, on a terminal with its words whole: what is longer is left so.
+
+    Elsewhere it stays one line, for other programs.
+    """
+    if not sys.stderr.isatty():
+        return message
+    with suppress(OSError, ValueError):
+        columns = int(os.environ.get("COLUMNS") or 0) or os.get_terminal_size(2).columns
+        if len(message) > columns >= NARROWEST:
+            return fill(message, columns, break_long_words=False, break_on_hyphens=False)
+    return message
 
 
 def show(*renderables: "RenderableType") -> None:
@@ -165,7 +181,7 @@ def asked(question: str) -> str | None:
     """Ask on stderr; return the answer without blanks around it, None at the end of the input."""
     answer = ""
     try:
-        _write(sys.stderr, question)
+        _write(sys.stderr, _fitting(question.rstrip()) + " ")
         answer = sys.stdin.readline()
     finally:
         # After ctrl-D or ctrl-C the next words begin a line of their own.
@@ -205,20 +221,36 @@ def bars(
     if not sys.stderr.isatty():
         yield lambda _task, _done, _status: None
         return
-    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, Progress, ProgressColumn, TextColumn, TimeRemainingColumn
+    from rich.table import Column
 
-    columns = (
-        TextColumn("{task.description}"),
+    console = _console(sys.stderr)
+    longest = max((len(description) for description, _ in tasks.values()), default=0)
+    words = Column(no_wrap=True, min_width=min(longest, console.width // 2))
+    columns: list[ProgressColumn] = [
+        TextColumn("{task.description}", table_column=words),
         BarColumn(bar_width=10),
         TextColumn("{task.fields[status]}"),
         TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=_console(sys.stderr), transient=True) as shown:
+    ]
+    if console.width < WIDE_ENOUGH_FOR_BARS:
+        del columns[1::2]
+    room = console.width - longest - (20 if len(columns) > 2 else 1)
+    with Progress(*columns, console=console, transient=True) as shown:
         ids = {
             number: shown.add_task(description, total=total, status="")
             for number, (description, total) in tasks.items()
         }
-        yield lambda task, done, status: shown.update(ids[task], completed=done, status=status)
+        yield lambda task, done, status: shown.update(
+            ids[task], completed=done, status=_parts_within(status, room)
+        )
+
+
+def _parts_within(text: str, room: int) -> str:
+    """Return as many of the parts of a text, with commas between them, as there is room for."""
+    while len(text) > room and ", " in text:
+        text = text.rpartition(", ")[0]
+    return text
 
 
 def followed(items: "Iterable[T]", description: str, total: int, noun: str) -> "list[T]":

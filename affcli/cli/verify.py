@@ -34,7 +34,7 @@ def verify(
             "--rows",
             help="How many to try; each once if not given.",
             metavar="N",
-            callback=check_count("--rows", MOST_TRIES),
+            parser=check_count("--rows", MOST_TRIES),
         ),
     ] = None,
     until_verdict: Annotated[

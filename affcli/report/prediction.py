@@ -32,12 +32,10 @@ def prediction_tables(
     moved = sum(push.moved for push in pushes)
     table = Sheet(
         ("rows", "hits", "false alarms", *ERROR_COLUMNS),
-        title=f"{title}: what it predicts of {len(pushes)} fresh pushes, {moved} of which moved",
-        caption="rows: the first so many that were learned, without excluded ones; hits, false "
-        "alarms: of the pushes that "
-        "moved the attractor, and of those that did not, the share of which a row within "
-        f"{radius:g} in said they would, with its 95 % interval; degrees, inches: median error of "
-        "the hits, and what 95 % of them stay below",
+        title=f"{title}: {len(pushes)} fresh pushes predicted, {moved} of which moved the puck",
+        caption="hits: of those that moved it; false alarms: of the others (95 % intervals)\n"
+        "degrees, inches: half of the hits are off by less; 95 %: so many are\n"
+        f"rows: the first learned; the nearest predicts, if it lies within {radius:g} in",
     )
     for score in growing:
         table.add(

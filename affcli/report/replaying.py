@@ -19,8 +19,12 @@ from affcli.report.table_map import View, table_map
 from affcli.report.trials import step_json, step_lines
 from affcli.report.words import call_words, movement_words, trial_words
 
-WIDE, MAP_WIDTH, MAP_ROWS = 72, 42, 18
-"""From so many columns on the words stand beside the map; the map's largest size in letters."""
+WIDE, WORDS = 72, 36
+"""From so many columns on the words stand beside the map, and have so many at least."""
+MAP_WIDTH, MAP_ROWS = 42, 18
+"""Of the map in letters on a terminal of 80 x 24; on a larger one it grows with both."""
+BESIDE_THE_MAP = 6
+"""Lines of a terminal beside those of the map: title, phase, what is asked."""
 GAP = 2
 """Columns between the map and the words."""
 MOST_CLOSE = 2
@@ -57,7 +61,11 @@ class Frame:
     ) -> Iterator[RenderableType]:
         """Yield the title, what is going on, the table, and the words beside it or below."""
         columns = options.max_width
-        view = View.of(self.workspace, min(columns - 1, MAP_WIDTH), MAP_ROWS)
+        across = min(columns - 1, max(MAP_WIDTH, columns - WORDS - GAP))
+        down = round(across * MAP_ROWS / MAP_WIDTH)
+        if console.is_terminal:
+            down = min(down, console.height - BESIDE_THE_MAP)
+        view = View.of(self.workspace, across, max(MAP_ROWS, down))
         drawn = table_map(self.scene, self.workspace, self.path, view, braille=self.braille)
         width = columns - (view.columns + GAP if columns >= WIDE else 0)
         # Further lines of a paragraph are indented, so that it is seen where the next begins.

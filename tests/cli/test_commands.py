@@ -10,6 +10,9 @@ import pytest
 from affcli.cli.app import program
 from affcli.cli.commands import SECTIONS, Command, Group, goes_on
 from tests.cli.program import affcli, done
+from tests.readmes import table_rows, words_of
+
+README = "affcli/cli/README.md"
 
 LISTED = [entry for section in SECTIONS.values() for entry in section]
 GROUPS = [entry for entry in LISTED if isinstance(entry, Group)]
@@ -37,6 +40,27 @@ def test_no_sentence_of_the_help_is_cut(group: Group | None, columns: str) -> No
     as_one_line = " ".join(shown.split())
     for entry in entries:
         assert f" {entry.name} {entry.help}" in as_one_line
+
+
+EVERY_HELP = [(), *((group.name,) for group in GROUPS), *(words for words, _ in COMMANDS)]
+
+
+@pytest.mark.parametrize("words", EVERY_HELP, ids=" ".join)
+def test_help_is_no_wider_than_the_terminal_and_loses_no_word(words: tuple[str, ...]) -> None:
+    narrow, wide = (done(*words, "--help", COLUMNS=columns).out for columns in ("40", "80"))
+    assert max(map(len, narrow.splitlines())) <= 40
+    assert "".join(narrow.split()) == "".join(wide.split())
+
+
+@pytest.mark.parametrize(("words", "command"), COMMANDS, ids=lambda given: str(given[0]))
+def test_the_help_ends_with_the_example_of_the_readme(
+    words: tuple[str, ...], command: Command
+) -> None:
+    shown = done(*words, "--help").out.splitlines()
+    assert shown[-2:] == ["Example:", f"  {command.example}"]
+    first = (row[0].strip("`") for row in table_rows(README) if len(row) == 3)
+    examples = {words_of(one): one for one in first if one.startswith("affcli ")}
+    assert examples[words] == command.example
 
 
 def test_the_help_lists_commands_under_headings() -> None:

@@ -1,5 +1,6 @@
 """``affcli replay`` on a terminal: played, gone through step by step, and left by ctrl-C."""
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -134,6 +135,18 @@ def test_on_a_terminal_nothing_is_wider_than_it(columns: int, used: Path) -> Non
         if not line.startswith(asked)
     ]
     assert max(map(cell_len, lines)) <= columns
+
+
+def test_the_map_takes_the_width_there_is(used: Path) -> None:
+    widths = []
+    for columns in (80, 120, 160):
+        shown = executed("replay", SOLVED, "--steps", "1", "--db", used, COLUMNS=str(columns)).out
+        drawn = (re.match(r"[\u2800-\u28ff ]*", line) for line in shown.splitlines())
+        widths.append(max(len(found[0].rstrip()) for found in drawn if found))
+        assert max(map(cell_len, shown.splitlines())) <= columns
+    assert 38 <= widths[0] <= 42
+    assert widths[1] > 75
+    assert widths[2] > 110
 
 
 def test_colors_are_for_those_who_want_them(used: Path) -> None:

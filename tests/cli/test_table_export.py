@@ -46,7 +46,7 @@ def selected(database: Path, query: str) -> list[Record]:
 def wide(database: Path, *args: Arg) -> list[Record]:
     """Return all columns of the rows that ``table list`` lists, each with its region."""
     regions = {row["id"]: row["region"] for row in listed(database, *args)}
-    every = selected(database, "SELECT * FROM affordance_wide ORDER BY id")
+    every = selected(database, "SELECT * FROM affordance_wide ORDER BY run, id")
     return [{**row, "region": regions[row["id"]]} for row in every if row["id"] in regions]
 
 

@@ -166,6 +166,35 @@ def test_results_go_to_stdout_alone(tmp_path: Path) -> None:
     assert run["behaviors"] == 1200
 
 
+@pytest.mark.parametrize("columns", [40, 80])
+def test_no_message_is_broken_inside_a_word(columns: int, used: Path) -> None:
+    """On a terminal; for other programs it stays one line."""
+    solve = ("solve", "--goal", "2", "--tool", "t-hook", "--start", "1", "--db", used)
+    for args in (
+        solve,
+        ("runs", "delete", "1", "--db", used),
+        ("solve", "--goal", "9", *solve[3:]),
+    ):
+        results = used.with_name("out.txt")
+        _, shown = on_terminal(*args, columns=columns, results_to=results)
+        lines = ESCAPE.sub("", shown).splitlines()
+        said = executed(*args).err
+        assert len(said.splitlines()) == 1
+        whole = {word for word in said.split() if not word.isdigit()}
+        assert whole <= {word for line in lines for word in line.split()}
+        assert all(len(line) <= columns or " " not in line for line in lines)
+
+
+def test_bars_have_a_line_for_each_tool_and_break_no_word(tmp_path: Path) -> None:
+    tools = ("--tool", "stick", "--tool", "l-stick", "--behaviors", "1200")
+    for columns in (40, 80):
+        database = tmp_path / f"{columns}.db"
+        _, shown = on_terminal("learn", *tools, "--db", database, columns=columns)
+        bars = ESCAPE.sub("", shown)
+        assert re.search(r"\rstick   .*\d+ min \d\d s, 500 behaviors[^…]*\nl-stick ", bars)
+        assert "…" not in bars
+
+
 @pytest.mark.fault(35)
 def test_colors_are_for_those_who_want_them(used: Path) -> None:
     explain = ("solve", "--goal", "1", "--tool", "stick", "--start", "1", "--explain", "--db", used)

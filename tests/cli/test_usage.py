@@ -28,12 +28,16 @@ USAGE = {
         "give --hours or --behaviors, not both",
     ),
     "hours in words": (("learn", "--tool", "stick", "--hours", "one"), "'--hours'"),
-    "behaviors in words": (("learn", "--tool", "stick", "--behaviors", "x"), "'--behaviors'"),
-    "seed in words": (("learn", "--tool", "stick", "--seed", "abc"), "'--seed'"),
-    "broken seed": (("learn", "--tool", "stick", "--seed", "1.5"), "'--seed'"),
+    "behaviors in words": (
+        ("learn", "--tool", "stick", "--behaviors", "x"),
+        "--behaviors x: must be a",
+    ),
+    "seed in words": (("learn", "--tool", "stick", "--seed", "abc"), "--seed abc: must be a whole"),
+    "seeds from to": (("learn", "--tool", "stick", "--seed", "0-9"), "--seed 0-9: must be a whole"),
+    "broken seed": (("learn", "--tool", "stick", "--seed", "1.5"), "--seed 1.5: must be a whole"),
     "robots in words": (("reproduce", "--robots", "many"), "'--robots'"),
     "nothing to replay": (("replay",), "what? give one of TRIAL, --run ID and --all"),
-    "trial in words": (("replay", "first"), "'TRIAL'"),
+    "trial in words": (("replay", "first"), "TRIAL first: must be a whole number"),
     "unknown option of replay": (("replay", "1", "--step", "2"), "No such option: --step"),
 }
 
