@@ -132,9 +132,8 @@ def figure(draws: Callable[..., Figure]) -> Callable[..., None]:
         said = one_line(f"{over}; {under}", MOST_SAID)
         say(f"{said}: {one_line(out)}{asked.note}")
 
-    command.__signature__ = inspect.Signature([*own.values(), *shared.values()])
-    command.__annotations__ = {
-        **{name: one.annotation for name, one in {**own, **shared}.items()},
-        "return": None,
-    }
+    options = {**own, **shared}
+    command.__annotations__ = {name: one.annotation for name, one in options.items()}
+    # Typer reads it for the options.
+    setattr(command, "__signature__", inspect.Signature([*options.values()]))  # noqa: B010
     return command

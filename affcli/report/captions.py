@@ -99,7 +99,7 @@ def trial_words(info: TrialInfo, run: LearningRunInfo) -> Words:
     tool = broken_words(spec.tool, spec.shape)
     return Words(
         f"Trial {info.id}: {tool}, goal {spec.goal}, start {spec.start}",
-        joined(trial_seed(spec), run_caption(run)),
+        joined(f"trial: {trial_seed(spec)}", run_caption(run)),
     )
 
 
