@@ -120,10 +120,10 @@ def test_a_caption_of_trials_names_session_or_runs(
 
 
 BAD: dict[str, tuple[tuple[str, ...], str]] = {
-    "narrow": (("--width", "2.9"), "--width 2.9: must lie in 3 to 15 inches"),
-    "wide": (("--width", "15.1"), "--width 15.1: must lie in 3 to 15 inches"),
-    "no number": (("--width", "nan"), "--width nan: must lie in 3 to 15 inches"),
-    "endless": (("--width", "inf"), "--width inf: must lie in 3 to 15 inches"),
+    "narrow": (("--width", "2.9"), "--width 2.9: must lie in 3 to 15"),
+    "wide": (("--width", "15.1"), "--width 15.1: must lie in 3 to 15"),
+    "no number": (("--width", "nan"), "--width nan: must lie in 3 to 15"),
+    "endless": (("--width", "inf"), "--width inf: must lie in 3 to 15"),
     "coarse": (("--dpi", "49"), "--dpi 49: must lie in 50 to 600"),
     "fine": (("--dpi", "601"), "--dpi 601: must lie in 50 to 600"),
     "huge": (("--dpi", "9" * 60), "must lie in 50 to 600"),

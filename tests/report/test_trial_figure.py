@@ -148,8 +148,7 @@ def test_nothing_written_lies_over_anything_else_written(count: int, width: floa
     figure = trial_figure(trial, shown_of(trial.steps, (60 - count, 59)), width)
     figure.draw_without_rendering()
     shown = [text for text in laid_out(figure) if text.get_text().strip()]
-    for axes in figure.axes:
-        shown += [getattr(axes, f"_{side}_title") for side in ("left", "right")]
+    shown += [axes._left_title for axes in figure.axes]  # type: ignore[attr-defined]
     boxes = [(text.get_text(), text.get_window_extent()) for text in shown]
     # The first words over a panel stand above empty lines, in which the others stand.
     boxes = [
@@ -176,11 +175,11 @@ def test_all_panels_show_the_same_part_of_the_table_at_the_same_scale() -> None:
     steps = [filmed_step(n, at=Point(9.0 - 2 * n, 20.0 + n)) for n in range(1, 8)]
     figure = figure_of(filmed_trial(*steps))
     assert len({(axes.get_xlim(), axes.get_ylim()) for axes in figure.axes}) == 1
-    width, height = figure.get_size_inches()
+    figure.draw_without_rendering()
     for axes in figure.axes:
-        place = axes.get_position()
-        across = place.width * width / np.ptp(axes.get_xlim())
-        up = place.height * height / np.ptp(axes.get_ylim())
+        place = axes.get_window_extent()
+        across = place.width / np.ptp(axes.get_xlim())
+        up = place.height / np.ptp(axes.get_ylim())
         assert across == pytest.approx(up)
 
 

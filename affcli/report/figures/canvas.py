@@ -147,10 +147,10 @@ def encoded(
         place: dict[str, Any] = {"x": STRIP / width, "in_layout": False, "linespacing": LINE}
         figure.text(y=1.0 + STRIP / height, s=over[0], va="bottom", fontsize=TITLE_SIZE, **place)
         figure.text(y=-STRIP / height, s=under[0], va="top", fontsize=CAPTION_SIZE, **place)
-        # Whole pixels: Agg leaves out parts of one, and 3.3 * 200 may be a little less than 660.
-        high = math.ceil((over[1] + height + under[1]) * dpi) / dpi
-        low = -under[1]
-        box = Bbox([[0.0, low], [(round(width * dpi) + 0.01) / dpi, low + high + 0.01 / dpi]])
+        # Whole pixels, and a little more: Agg leaves out parts of one.
+        across, up = round(width * dpi), math.ceil((over[1] + height + under[1]) * dpi)
+        more = 0.01 if kind == "png" else 0.0
+        box = Bbox.from_bounds(0.0, -under[1], (across + more) / dpi, (up + more) / dpi)
         figure.savefig(page, format=kind, dpi=dpi, bbox_inches=box, metadata=METADATA[kind])
     return page.getvalue()
 

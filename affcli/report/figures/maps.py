@@ -21,9 +21,10 @@ def map_panels(
     figure: FigureBase, count: int, columns: int, labels: tuple[str, str] = ("x (in)", "y (in)")
 ) -> list[Axes]:
     """Add `count` panels in rows of `columns`, labelled once below and once on the left."""
-    if any(labels):
+    if isinstance(figure, Figure):
         # In a page of its own: a key below the figure would lie over the label otherwise.
         figure = figure.add_subfigure(figure.add_gridspec(1, 1)[0])
+    if any(labels):
         figure.supxlabel(labels[0])
         figure.supylabel(labels[1])
     grid = figure.subplots(math.ceil(count / columns), columns, squeeze=False)
