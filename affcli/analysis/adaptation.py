@@ -79,8 +79,8 @@ class AdaptationCourse:
         shares = shares_of(broken)
         last = shares[-1].number if shares else 0
         trials = sum(group.trials for group in broken)
-        courses = (probabilities_of(groups, last) for groups in (broken, whole))
-        return cls(session, tool, shape, trials, shares, *courses, run)
+        with_broken, with_whole = (probabilities_of(groups, last) for groups in (broken, whole))
+        return cls(session, tool, shape, trials, shares, with_broken, with_whole, run)
 
 
 def shares_of(groups: Sequence[TrialGroup]) -> tuple[Share, ...]:

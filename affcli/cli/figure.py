@@ -1,4 +1,8 @@
-"""What every figure has on the command line: where to, how wide, what stands over and under it."""
+"""What every figure has on the command line: where to, how wide, what stands over and under it.
+
+A figure is a function under `@figure` that returns what to draw, and a line in
+`affcli.cli.commands`: its own options are the function's, those below it gets.
+"""
 
 import inspect
 from collections.abc import Callable
@@ -9,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 import typer
 
 from affcli.cli.files import require_new, save
-from affcli.cli.options import FIGURE_ENDINGS, Force, check_if_given
+from affcli.cli.options import FIGURE_ENDINGS, Force
 from affcli.cli.terminal import say
 from affcli.errors import BadInputError, one_line
 from affcli.lab.drawing import require_figures
@@ -43,20 +47,20 @@ class Figure(NamedTuple):
     note: str = ""
 
 
-def _checked_width(width: float) -> float:
-    if not NARROWEST <= width <= WIDEST:  # nor is it when it is no number
-        raise BadInputError(f"--width {width}: must lie in {NARROWEST:g} to {WIDEST:g} inches")
-    return width
+def _within(option: str, low: float, high: float) -> Callable[[Any], Any]:
+    """Return a check for an option that is a number, which nan is not."""
+
+    def checked(value: float | None) -> float | None:
+        if value is not None and not low <= value <= high:
+            shown = one_line(value, 40)
+            raise BadInputError(f"{option} {shown}: must lie in {low:g} to {high:g}")
+        return value
+
+    return checked
 
 
-def _checked_dpi(dpi: int) -> int:
-    if not COARSEST <= dpi <= FINEST:
-        raise BadInputError(f"--dpi {one_line(dpi, 40)}: must lie in {COARSEST} to {FINEST}")
-    return dpi
-
-
-def _checked_title(title: str) -> str:
-    if len(title) > LONGEST_TITLE:
+def _checked_title(title: str | None) -> str | None:
+    if title is not None and len(title) > LONGEST_TITLE:
         raise BadInputError(f"--title of {len(title)} letters: at most {LONGEST_TITLE} fit")
     return title
 
@@ -72,12 +76,17 @@ def _page(
             "--width",
             help="Inches: 3.5 for a column, 7 for two.",
             metavar="INCHES",
-            callback=check_if_given(_checked_width),
+            callback=_within("--width", NARROWEST, WIDEST),
         ),
     ] = None,
     dpi: Annotated[
         int,
-        typer.Option("--dpi", help="Pixels an inch of a PNG.", metavar="N", callback=_checked_dpi),
+        typer.Option(
+            "--dpi",
+            help="Pixels an inch of a PNG.",
+            metavar="N",
+            callback=_within("--dpi", COARSEST, FINEST),
+        ),
     ] = 300,
     title: Annotated[
         str | None,
@@ -85,7 +94,7 @@ def _page(
             "--title",
             help='In place of its own title; "" for none.',
             metavar="TEXT",
-            callback=check_if_given(_checked_title),
+            callback=_checked_title,
         ),
     ] = None,
     no_caption: Annotated[
@@ -132,9 +141,8 @@ def figure(draws: Callable[..., Figure]) -> Callable[..., None]:
         said = one_line(f"{over}; {under}", MOST_SAID)
         say(f"{said}: {one_line(out)}{asked.note}")
 
-    command.__signature__ = inspect.Signature([*own.values(), *shared.values()])
-    command.__annotations__ = {
-        **{name: one.annotation for name, one in {**own, **shared}.items()},
-        "return": None,
-    }
+    options = {**own, **shared}
+    command.__annotations__ = {name: one.annotation for name, one in options.items()}
+    # Typer reads it for the options.
+    setattr(command, "__signature__", inspect.Signature([*options.values()]))  # noqa: B010
     return command

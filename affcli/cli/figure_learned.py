@@ -34,7 +34,6 @@ from affcli.errors import UsageError
 from affcli.report import figures
 from affcli.report.captions import (
     curves_words,
-    kinds_words,
     robots_words,
     tools_words,
     workspace_words,
@@ -228,10 +227,10 @@ def learning(
         curves = lab.learning_curves.curves_of(
             store, _runs_to_draw(store, run or (), names, database)
         )
+    draw = partial(figures.learning.curves_figure, curves)
     if len(curves) > figures.learning.MOST_CURVES:
-        kinds = lab.learning_curves.by_kind(curves)
-        return Figure(kinds_words(curves), partial(figures.learning.bands_figure, kinds))
-    return Figure(curves_words(curves), partial(figures.learning.curves_figure, curves))
+        draw = partial(figures.learning.bands_figure, lab.learning_curves.by_kind(curves))
+    return Figure(curves_words(curves), draw)
 
 
 def _chosen_run(

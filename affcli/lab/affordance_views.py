@@ -7,6 +7,7 @@ from affcli.core.records import LearningRunInfo
 from affcli.errors import BadInputError, UsageError
 from affcli.lab.run_parts import settings_of
 from affcli.report import table_views
+from affcli.report.captions import Words
 from affcli.report.table_views import RowView, ShownTables
 from affcli.store import Store
 
@@ -50,8 +51,8 @@ def tables_around_trial(store: Store, trial_id: int) -> ShownTables:
     )
 
 
-def row_shown(store: Store, row_id: int) -> tuple[str, RowView]:
-    """Return a row of an affordance table with a title.
+def row_shown(store: Store, row_id: int) -> tuple[Words, RowView]:
+    """Return a row of an affordance table with what is said of it.
 
     Raises:
         UsageError: there is no such row.

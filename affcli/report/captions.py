@@ -100,7 +100,7 @@ def trial_words(info: TrialInfo, run: LearningRunInfo) -> Words:
     tool = broken_words(spec.tool, spec.shape)
     return Words(
         f"Trial {info.id}: {tool}, goal {spec.goal}, start {spec.start}",
-        joined(trial_seed(spec), run_caption(run)),
+        joined(f"trial: {trial_seed(spec)}", run_caption(run)),
     )
 
 
@@ -115,19 +115,12 @@ def curves_words(curves: Sequence[Curve]) -> Words:
     """Return which learning runs they are; the key of the figure tells several apart."""
     if len(curves) == 1:
         return Words(LEARNING, run_caption(curves[0].run))
-    return kinds_words(curves)
-
-
-def kinds_words(curves: Sequence[Curve]) -> Words:
-    """Return how many learning runs they are, and what of them is not default."""
-    runs = [curve.run for curve in curves]
     by_difference: dict[str, list[str]] = {}
-    for run in runs:
-        by_difference.setdefault(differing(run.spec), []).append(str(run.id))
-    if len(by_difference) == 1:
-        return Words(LEARNING, joined(many(len(runs), "learning run"), *by_difference))
-    facts = [f"{', '.join(ids)}: {words}" for words, ids in by_difference.items()]
-    return Words(LEARNING, joined(many(len(runs), "learning run"), *(f"run {f}" for f in facts)))
+    for curve in curves:
+        by_difference.setdefault(differing(curve.run.spec), []).append(str(curve.run.id))
+    facts = [f"run {', '.join(ids)}: {words}" for words, ids in by_difference.items()]
+    counted = many(len(curves), "learning run")
+    return Words(LEARNING, joined(counted, *(facts if len(facts) > 1 else by_difference)))
 
 
 def robots_words(session: SessionInfo, robots: int) -> Words:

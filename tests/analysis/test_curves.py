@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from affcli.analysis.curves import ENOUGH_BEHAVIORS, Band, Curve, ToolCurves
-from affcli.analysis.statistics import HIGH, LOW, quantile
+from affcli.analysis.statistics import HIGH, LOW, mean_interval, quantile
 from affcli.core.results import LearningInterval
 from tests.factories import learning_spec
 from tests.report.hand_made import learned_run
@@ -78,6 +78,19 @@ def test_robots_are_compared_while_all_of_them_learn(
         rows = [curve.rows[i] for curve in curves]
         assert tool.rows.mean[i] == pytest.approx(fmean(rows))
         assert (tool.rows.low[i], tool.rows.high[i]) == (quantile(rows, LOW), quantile(rows, HIGH))
+        assert math.isnan(tool.rows.mean_low[i])
+
+
+@pytest.mark.parametrize(("robots", "certain"), [(19, False), (20, True)])
+def test_the_interval_is_that_of_the_mean_and_of_enough_robots(robots: int, certain: bool) -> None:
+    values = [float(n % 7) for n in range(robots)]
+    band = Band.of([[value] for value in values])
+    if certain:
+        assert (band.mean_low[0], band.mean_high[0]) == mean_interval(values)
+        assert band.low[0] < band.mean_low[0] < band.mean[0] < band.mean_high[0] < band.high[0]
+    else:
+        assert math.isnan(band.mean_low[0])
+        assert math.isnan(band.mean_high[0])
 
 
 def test_a_share_that_one_robot_lacks_is_nobodys() -> None:

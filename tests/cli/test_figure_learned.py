@@ -12,28 +12,38 @@ from tests.cli.program import Arg, Ended, done, names_in, refused, rows
 from tests.cli.without import without
 
 OF_DATABASE: dict[str, tuple[tuple[str, ...], str]] = {
-    "the latest run of the T-hook": (("affordances",), "run 1, t-hook, "),
-    "a run": (("affordances", "--run", "2"), "run 2, stick, "),
-    "the latest run of a tool": (("affordances", "--tool", "stick"), "run 2, stick, "),
-    "two runs": (("affordances", "--compare", "2"), "runs 1 (t-hook) and 2 (stick): "),
+    "the latest run of the T-hook": (("affordances",), "What the T-hook affords; "),
+    "a run": (("affordances", "--run", "2"), "What the Stick affords; "),
+    "the latest run of a tool": (("affordances", "--tool", "stick"), "What the Stick affords; "),
+    "two runs": (("affordances", "--compare", "2"), "What runs 1 and 2 have in common; "),
     "a broken tool's trial": (
         ("affordances", "--after-trial", "9"),
-        "trial 9, t-hook that became l-hook: ",
+        "Trial 9: what the T-hook that became L-hook unlearned; ",
     ),
-    "a whole tool's trial": (("affordances", "--after-trial", "1"), "trial 1, stick: "),
-    "a row": (("row", "1"), "row 1, t-hook, "),
-    "all runs": (("learning",), "learning of T-hook (run 1), Stick (run 2)"),
-    "a run's curve": (("learning", "--run", "2"), "learning of Stick (run 2)"),
-    "a tool's curve": (("learning", "--tool", "t-hook"), "learning of T-hook (run 1)"),
+    "a whole tool's trial": (
+        ("affordances", "--after-trial", "1"),
+        "Trial 1: what the Stick unlearned",
+    ),
+    "a row": (("row", "1"), "Row 1 of the T-hook's affordance table; run 1: T-hook, seed "),
+    "all runs": (("learning",), "Learning over robot time; 2 learning runs; "),
+    "a run's curve": (("learning", "--run", "2"), "Learning over robot time; run 2: Stick, seed "),
+    "a tool's curve": (
+        ("learning", "--tool", "t-hook"),
+        "Learning over robot time; run 1: T-hook, seed ",
+    ),
 }
 OF_NOTHING: dict[str, tuple[tuple[str, ...], str]] = {
     "workspace": (
         ("workspace",),
-        "the table with the t-hook; the bare arm reaches from 0.0 to 18.8",
+        "T-hook at the centre; the bare arm reaches from 0.0 to 18.8 in; default settings",
     ),
-    "workspace with a stick": (("workspace", "--tool", "stick"), "the table with the stick; "),
-    "tools": (("tools",), "5 tools, and a t-hook that became l-hook: "),
-    "tools, another break": (("tools", "--becomes", "stick"), "a t-hook that became stick: "),
+    "workspace with a stick": (("workspace", "--tool", "stick"), "Stick at the centre; "),
+    "tools": (("tools",), "The tools, to scale; T-hook that became L-hook; default settings: "),
+    "tools, another break": (("tools", "--becomes", "stick"), "T-hook that became Stick; "),
+    "tools of other sizes": (
+        ("tools", "--set", "tools.bar_reach=7"),
+        "; not default: tools.bar_reach = 7: ",
+    ),
 }
 MAGIC = {".png": b"\x89PNG\r\n", ".svg": b"<?xml ", ".pdf": b"%PDF-"}
 
@@ -76,11 +86,13 @@ def test_robots_of_a_reproduction(reproduced: Path) -> None:
     path = reproduced.parent / "robots.pdf"
     learning = ("figure", "learning", "--db", reproduced, "--out", path)
     ended = done(*learning, "--session", "1")
-    assert drawn(ended, path).startswith("learning of 2 robots (session 1): ")
+    assert drawn(ended, path).startswith(
+        "Learning over robot time; session 1 (reproduce), 2 robots, seed "
+    )
     line = refused(2, *learning, "--force")
     assert "no learning runs but of robots: --session 1 draws these" in line
     run = done("figure", "affordances", "--run", "3", "--out", path, "--force", "--db", reproduced)
-    assert drawn(run, path).startswith("run 3, l-hook, ")
+    assert "; run 3: L-hook, seed 0, robot 0 of session 1, " in drawn(run, path)
 
 
 def unfinish(database: Path, run: int) -> None:
@@ -98,11 +110,12 @@ def test_an_unfinished_run_is_drawn_as_far_as_it_came(learned: Path) -> None:
     line = refused(2, "figure", "affordances", *out)
     assert "no finished run with the t-hook; --run 1 draws what run 1 has so far" in line
     said = drawn(done("figure", "affordances", "--run", "1", *out), path)
-    assert said.startswith("run 1, t-hook (unfinished, ")
+    assert "; run 1: T-hook, seed " in said
+    assert " so far (unfinished); " in said
     said = drawn(done("figure", "affordances", "--run", "2", "--compare", "1", *out), path)
-    assert said.startswith("runs 2 (stick) and 1 (t-hook): ")
-    said = drawn(done("figure", "learning", *out), path)
-    assert said.startswith("learning of T-hook (run 1, unfinished), Stick (run 2): ")
+    assert said.startswith("What runs 2 and 1 have in common; ")
+    said = drawn(done("figure", "learning", "--run", "1", *out), path)
+    assert said.endswith(f" so far (unfinished); default settings: {path}\n")
 
 
 NUMBERS = "they are numbered 1 to"
@@ -196,15 +209,16 @@ def test_with_nothing_to_draw_it_says_what_to_do(command: tuple[str, ...], empty
     assert names_in(empty.parent) == [empty.name]
 
 
-def test_more_runs_than_can_be_told_apart_are_not_drawn(learned: Path) -> None:
+def test_more_runs_than_can_be_told_apart_are_drawn_as_means(learned: Path) -> None:
     for seed in range(1, 12):
         learn = ("learn", "--tool", "stick", "--behaviors", "5", "--seed", str(seed))
         done(*learn, "--db", learned)
-    out = ("--out", learned.parent / "f.svg", "--db", learned)
-    line = refused(2, "figure", "learning", *out)
-    assert "13 runs are more than the 12 lines that can be told apart; choose with --run" in line
+    out = ("--out", learned.parent / "f.svg", "--force", "--db", learned)
+    assert "; 13 learning runs; default settings: " in done("figure", "learning", *out).err
+    means = (learned.parent / "f.svg").read_bytes()
     chosen = [("--run", str(number)) for number in range(2, 14)]
     done("figure", "learning", *(word for pair in chosen for word in pair), *out)
+    assert (learned.parent / "f.svg").read_bytes() != means
 
 
 def test_a_run_is_drawn_with_the_sizes_it_was_learned_with(learned: Path) -> None:

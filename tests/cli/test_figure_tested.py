@@ -58,22 +58,27 @@ def test_what_was_drawn_is_said(used: Path) -> None:
     out = used.with_name("f.svg")
     ((steps, outcome),) = rows(used, "SELECT steps, outcome FROM trial WHERE id = 9")
     said = figure("trial", "9", "--db", used, "--out", out)
-    assert said == (
-        f"Trial 9: t-hook, broken: l-hook, goal 1, start 1; {outcome}, {steps} "
-        f"step{'s' * (steps != 1)}: {out}\n"
+    assert said.startswith(
+        f"Trial 9: T-hook that became L-hook, goal 1, start 1; {outcome}, {steps} "
+        f"step{'s' * (steps != 1)}; "
     )
+    assert "; trial: seed 0; run 1: T-hook, seed " in said
+    assert said.endswith(f": {out}\n")
     ((session,),) = rows(used, "SELECT id FROM session WHERE kind = 'break-tool'")
     said = figure("adaptation", "--db", used, "--out", out, "--force")
-    assert said == (
-        f"adaptation, session {session}: t-hook, broken: l-hook; 16 trials of 1 robot: {out}\n"
+    assert said.startswith(
+        "Adaptation: T-hook that became L-hook; 16 trials with the broken tool; "
+        f"session {session} (break-tool), 1 robot, seed 0; "
     )
+    assert "; run 1: T-hook, seed " in said
 
 
 def test_without_a_reproduction_single_robots_are_shown_and_it_says_what_to_run(
     used: Path,
 ) -> None:
     said = figure("results", "--db", used, "--out", used.with_name("f.png"))
-    assert said.startswith("no finished reproduction, so results of one robot a tool: runs 1, 2 (")
+    assert said.startswith("Successes beside the paper's; one robot a tool: run 1: T-hook, seed ")
+    assert "; run 2: Stick, seed " in said
     assert said.endswith("run affcli reproduce --robots 20\n")
 
 
@@ -82,7 +87,7 @@ def test_a_reproduction_of_few_robots_has_no_intervals(name: str, reproduced: Pa
     for session in ((), ("--session", "1")):
         out = reproduced.with_name("f.png")
         said = figure(name, *session, "--db", reproduced, "--out", out, "--force")
-        assert said.startswith(f"{name}, session 1: ")
+        assert "session 1 (reproduce), 2 robots, seed " in said
         assert "too few robots for intervals (5 or more)" in said
 
 
@@ -103,7 +108,9 @@ def test_a_trial_that_has_not_ended_is_drawn_as_far_as_it_came(used: Path) -> No
     )
     for trial, so_far in (("9", "1 step"), ("10", "0 steps")):
         out = used.with_name(f"{trial}.pdf")
-        assert f"not ended, {so_far} so far: " in figure("trial", trial, "--db", used, "--out", out)
+        assert f"; not ended, {so_far} so far; " in figure(
+            "trial", trial, "--db", used, "--out", out
+        )
         assert out.stat().st_size > 5_000
 
 
@@ -115,7 +122,7 @@ def test_a_trial_without_steps_has_none_to_name(used: Path) -> None:
     )
     args = ("figure", "trial", "9", "--db", used, "--out", used.with_name("f.png"))
     assert "no step 1 in trial 9; it has none" in refused(2, *args, "--steps", "1-3")
-    assert "; no row left, 0 steps: " in figure(*args[1:])
+    assert "; no row left, 0 steps; " in figure(*args[1:])
 
 
 def test_strange_names_are_letters_in_a_figure(used: Path) -> None:

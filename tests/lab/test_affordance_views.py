@@ -63,7 +63,9 @@ def test_the_table_of_a_run_has_all_its_rows(store: Store, run: LearningRunInfo)
     assert [row for row, _ in view.rows] == [row.row for row in store.learning.rows(run.id)]
     assert counts(view) == {RowStatus.LIVE: run.rows}
     assert len(shown.calls) == 8
-    assert shown.title == f"run {run.id}, t-hook, {run.rows} rows"
+    assert shown.words.title == "What the T-hook affords"
+    assert shown.words.caption.startswith(f"{run.rows} rows; run {run.id}: T-hook, seed 0, ")
+    assert shown.words.caption.endswith("; not default: trial.max_steps = 6")
 
 
 def test_rows_that_solving_excluded_are_told_apart(store: Store, run: LearningRunInfo) -> None:
@@ -73,7 +75,7 @@ def test_rows_that_solving_excluded_are_told_apart(store: Store, run: LearningRu
     shown = table_of_run(store, run)
     assert [fate for _, fate in shown.views[0].rows][:5] == [RowStatus.EXCLUDED] * 5
     assert counts(shown.views[0]) == {RowStatus.LIVE: run.rows - 5, RowStatus.EXCLUDED: 5}
-    assert shown.title.endswith("rows, 5 of them excluded")
+    assert shown.words.caption.startswith(f"{run.rows} rows, 5 of them excluded; ")
 
 
 def test_a_trial_with_a_broken_tool_loses_the_rows_that_died_in_it(
@@ -96,8 +98,8 @@ def test_a_trial_with_a_broken_tool_loses_the_rows_that_died_in_it(
         assert names(before) == (whole, set())
         missing = {"right bar", "right hook"} if trial in broken else set()
         assert names(after) == (whole - missing, missing)
-        assert f"{len(lost)} lost" in shown.title
-        assert ("became l-hook" in shown.title) == (trial in broken)
+        assert f"{len(lost)} lost" in shown.words.caption
+        assert ("became L-hook" in shown.words.title) == (trial in broken)
 
 
 def test_after_the_last_trial_of_solving_the_table_is_as_it_is_stored(store: Store) -> None:
@@ -141,8 +143,8 @@ def test_two_runs_are_compared_each_over_its_own_tool(store: Store, run: Learnin
 def test_an_unfinished_run_says_how_far_it_came(store: Store) -> None:
     spec = spec_of("t-hook", 600)
     info = store.learning.begin(spec, {}, now())
-    assert table_of_run(store, info).title == (
-        f"run {info.id}, t-hook (unfinished, 0 min 00 s so far), 0 rows"
+    assert table_of_run(store, info).words.caption == (
+        f"0 rows; run {info.id}: T-hook, seed 0, 0 min 00 s so far (unfinished); default settings"
     )
 
 
@@ -150,11 +152,12 @@ def test_a_row_is_shown_with_the_tool_of_its_own_settings(
     store: Store, run: LearningRunInfo
 ) -> None:
     one = store.learning.rows(run.id)[2]
-    title, view = row_shown(store, one.id)
+    words, view = row_shown(store, one.id)
     assert view.row == one.row
     assert view.tool.name == "t-hook"
     assert view.puck_radius == 1.5
-    assert title == f"row {one.id}, t-hook, {one.row.exploratory} (run {run.id})"
+    assert words.title == f"Row {one.id} of the T-hook's affordance table"
+    assert words.caption.startswith(f"run {run.id}: T-hook, seed 0, ")
 
 
 def test_a_tool_of_which_only_the_name_is_known_is_named_and_not_drawn(
@@ -162,9 +165,9 @@ def test_a_tool_of_which_only_the_name_is_known_is_named_and_not_drawn(
 ) -> None:
     spoon = replace(run, spec=replace(run.spec, held=unknown_tool("spoon")))
     shown = table_of_run(store, spoon)
-    assert shown.title == (
-        f"run {run.id}, spoon, {run.rows} rows; not drawn, for this affcli does not know the "
-        "shape: spoon"
+    assert shown.words.title == "What the Spoon affords"
+    assert shown.words.caption.endswith(
+        "; not drawn, for this affcli does not know the shape: spoon"
     )
     assert (shown.views[0].parts, len(shown.views[0].rows)) == ((), run.rows)
     assert affordances_figure(shown.calls, shown.views, shown.key).axes
@@ -174,7 +177,8 @@ def test_an_interrupted_trial_shows_what_was_done(store: Store, run: LearningRun
     counted(solving(store, run, "2", "1"))
     altered(store.path, *INTERRUPTED)
     shown = tables_around_trial(store, 1)
-    assert "trial 1, t-hook (unfinished, 2 steps so far): " in shown.title
+    assert shown.words.title == "Trial 1: what the T-hook unlearned"
+    assert "; unfinished, 2 steps so far; trial: seed 0; run 1: T-hook" in shown.words.caption
 
 
 @pytest.mark.parametrize("planner", ["nested-query:threshold=0.3", "psychic:threshold=0.3"])
@@ -206,14 +210,15 @@ def test_a_tool_of_which_it_is_not_known_how_it_is_held_is_left_out_and_named(
     counted(solving(store, run, "2", "1"))
     altered(store.path, *PINCHED)
     left_out = "; tool not drawn, for this affcli does not know where it is held: pinch 2"
-    title, view = row_shown(store, store.learning.rows(run.id)[2].id)
+    words, view = row_shown(store, store.learning.rows(run.id)[2].id)
     assert (view.tool.name, view.tool.parts) == ("t-hook", ())
-    assert title.endswith(left_out)
+    assert words.caption.endswith(left_out)
     assert row_figure(view).axes
     shown = tables_around_trial(store, 1)
-    assert shown.title.endswith(left_out)
+    assert shown.words.caption.endswith(left_out)
     assert shown.views[0].parts == ()
     film = film_of(store, 1)
     assert (film.parts, film.missing) == ((), ())
-    assert film.title == "Trial 1: t-hook (not drawn: held by pinch 2), goal 2, start 1"
+    assert film.title == "Trial 1: T-hook, goal 2, start 1"
+    assert film.caption.endswith("; tool not drawn: held by pinch 2")
     assert trial_figure(film, shown_of(film.steps, None)).axes

@@ -5,7 +5,6 @@ from dataclasses import replace
 from statistics import fmean
 
 import pytest
-from affcli.report.figure_titles import results_title
 
 from affcli.analysis.paper import other_parts
 from affcli.config import Settings, settings_with
@@ -20,6 +19,7 @@ from affcli.lab.film_strips import film_of
 from affcli.lab.overview import overview_of, reproduction_of
 from affcli.lab.results import results_in
 from affcli.lab.sessions import finished_session
+from affcli.report.captions import results_words
 from affcli.report.overview import overview_tables
 from affcli.store import Store
 from tests.lab.quick import (
@@ -186,7 +186,9 @@ def test_results_of_single_robots(store: Store, run: LearningRunInfo) -> None:
     ended = {(t.spec.start, t.session_id): t.outcome for t in store.trials.trials(run_id=again.id)}
     latest = [ended["1", 2], ended["2", 3], ended["3", 5]]
     assert list(results.cells["t-hook", "3"].counts) == [latest.count(Outcome.SOLVED)]
-    assert results_title(results) == f"one robot a tool: run {again.id} (noisy)"
+    assert results_words(results).caption == (
+        f"one robot a tool: run {again.id}: T-hook, seed 0, sensor noisy"
+    )
     assert results.broken is not None
     assert results.total is None
 
@@ -202,7 +204,7 @@ def test_a_later_run_with_other_parts_does_not_hide_the_paper_s(
     assert latest is not None
     assert (latest.id, sorted(other_parts(latest.spec))) == (other.id, ["binding"])
     results = results_in(store, None)
-    assert results.runs == {"noisy": [run.id]}
+    assert results.runs == {"noisy": {run.id: run.spec}}
     assert results.cells["t-hook", "1"].tried == 1
 
 

@@ -7,9 +7,12 @@ import hashlib
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
+from affcli.analysis.comparison import Beside, Results
 from affcli.analysis.curves import Curve, ToolCurves
+from affcli.analysis.prediction import Prediction, Push
 from affcli.analysis.row_status import RowStatus, compared
 from affcli.behaviors.moving import paper_repertoire
 from affcli.core.affordance import Affordance
@@ -19,15 +22,20 @@ from affcli.core.workspace import Workspace
 from affcli.report.figures.affordances import affordances_figure
 from affcli.report.figures.canvas import FORMATS, encoded
 from affcli.report.figures.learning import bands_figure, curves_figure
+from affcli.report.figures.prediction import prediction_figure
+from affcli.report.figures.results import results_figure
 from affcli.report.figures.row import row_figure
 from affcli.report.figures.tools import tools_figure
+from affcli.report.figures.trial import trial_figure
 from affcli.report.figures.workspace import workspace_figure
+from affcli.report.film import FilmedTrial, Shown, shown_of
 from affcli.report.table_views import RowView, TableView
 from affcli.simulation.arm import reach_at
 from affcli.simulation.tasks.extension_of_reach import extension_of_reach
 from affcli.simulation.tools.paper import paper_tools
-from tests.factories import affordance, learning_spec
-from tests.report.hand_made import learned_run
+from tests.factories import affordance, learning_spec, moved_by
+from tests.report.filmed import filmed_step, filmed_trial
+from tests.report.hand_made import learned_run, session_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -88,17 +96,56 @@ def bands() -> list[ToolCurves]:
     ]
 
 
-FIGURES: dict[str, Callable[[], "Figure"]] = {
-    "affordances": lambda: affordances_figure(
-        CALLS, [view([(row, RowStatus.LIVE) for row in table()])], KEY
-    ),
-    "compared": lambda: affordances_figure(CALLS, compared_views(), KEY),
-    "row": lambda: row_figure(RowView(table()[3], T_HOOK, WORKSPACE.puck.radius)),
-    "workspace": lambda: workspace_figure(WORKSPACE, T_HOOK, REACH, TASKS),
-    "tools": lambda: tools_figure(list(TOOLS.values()), (T_HOOK, L_HOOK), WORKSPACE.puck.radius),
-    "curves": lambda: curves_figure([curve(f"run {n}", n) for n in range(1, 13)]),
-    "bands": lambda: bands_figure(bands()),
+WIDTHS = (3.5, 7.0)
+"""Of a column and of two (in)."""
+LONG = "a very long name of a tool that nobody has"
+CELLS = {
+    (tool, goal): Beside(3, [2, 3] * 10, 4)
+    for tool in (*TOOLS, f"{LONG}, lookahead:depth=2")
+    for goal in ("1", "2", "3", "4", "far corner")
 }
+SUMS = Beside(69, [61, 70] * 10, 80), Beside(16, [14, 16] * 10, 16)
+
+
+def pushes() -> list[Push]:
+    """Return pushes of which some were predicted, better and better."""
+    seen, wrist = moved_by(2.0, 0.5), moved_by(5.0, 0.0)
+    return [
+        Push(
+            number % 2 == 0,
+            seen if number % 2 == 0 else moved_by(0.0, 0.0),
+            wrist,
+            {
+                rows: Prediction(moved_by(2.0 + number / rows / 9, 0.6), moved_by(1.0, 1.0))
+                for rows in (5, 10, 20, 40, 80, 97)
+            },
+        )
+        for number in range(24)
+    ]
+
+
+def strip() -> tuple[FilmedTrial, Shown]:
+    """Return a trial of twelve steps with a broken tool."""
+    steps = [filmed_step(n, row=1_000 + n, lost=n < 6, excluded=n < 6) for n in range(1, 13)]
+    trial = filmed_trial(*steps, shape="l-hook")
+    return trial, shown_of(trial.steps, None)
+
+
+FIGURES: dict[str, "Callable[[float | None], Figure]"] = {
+    "affordances": partial(
+        affordances_figure, CALLS, [view([(row, RowStatus.LIVE) for row in table()])], KEY
+    ),
+    "compared": partial(affordances_figure, CALLS, compared_views(), KEY),
+    "row": partial(row_figure, RowView(table()[3], T_HOOK, WORKSPACE.puck.radius)),
+    "workspace": partial(workspace_figure, WORKSPACE, T_HOOK, REACH, TASKS),
+    "tools": partial(tools_figure, list(TOOLS.values()), (T_HOOK, L_HOOK), WORKSPACE.puck.radius),
+    "curves": partial(curves_figure, [curve(f"run {n}", n) for n in range(1, 13)]),
+    "bands": partial(bands_figure, bands()),
+    "results": partial(results_figure, Results(session_of(5), 20, {}, CELLS, *SUMS)),
+    "prediction": partial(prediction_figure, pushes()),
+    "trial": partial(trial_figure, *strip()),
+}
+"""Each as wide as asked (in), or as suits it."""
 
 
 def hashes() -> list[str]:
@@ -106,7 +153,7 @@ def hashes() -> list[str]:
     files = [(name, ".svg") for name in FIGURES]
     files += [("compared", ending) for ending in FORMATS if ending != ".svg"]
     return [
-        f"{name}{ending} {hashlib.sha256(encoded(FIGURES[name](), ending)).hexdigest()}"
+        f"{name}{ending} {hashlib.sha256(encoded(FIGURES[name](None), ending)).hexdigest()}"
         for name, ending in files
     ]
 

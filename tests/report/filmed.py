@@ -79,6 +79,7 @@ def filmed_trial(
     believed, held = TOOLS[ToolName(tool)], TOOLS[ToolName(shape or tool)]
     return FilmedTrial(
         title=f"Trial 1: {tool}, goal 3, start 4",
+        caption="run 1",
         ending=ending,
         parts=held.parts,
         missing=believed.parts_missing_in(held),

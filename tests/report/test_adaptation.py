@@ -21,6 +21,7 @@ from affcli.analysis.adaptation import (
 )
 from affcli.analysis.statistics import exact_interval, t95
 from affcli.core.results import StepSums, TrialGroup
+from affcli.report.captions import adaptation_words
 from affcli.report.figures.adaptation import adaptation_figure
 from affcli.report.figures.canvas import BLUE, ONE_COLUMN, VERMILION, encoded
 from tests.report.hand_made import session_of
@@ -191,7 +192,7 @@ def test_the_figure_shows_running_trials_shares_and_probabilities() -> None:
         VERMILION: [(m.number, m.mean) for m in COURSE.broken],
         BLUE: [(m.number, m.mean) for m in COURSE.whole],
     }
-    assert {"broken tool", "whole t-hook", "95 % interval"} <= words_of(COURSE)
+    assert {"broken tool", "whole T-hook", "95 % interval"} <= words_of(COURSE)
 
 
 def test_without_intervals_there_are_no_bands() -> None:
@@ -205,15 +206,19 @@ def test_without_intervals_there_are_no_bands() -> None:
     )
     assert not any(axes.collections for axes in adaptation_figure(few).axes)
     assert "95 % interval" not in words_of(few)
-    assert (
-        "t-hook, broken: l-hook; 2 trials of 2 robots\ntoo few robots for intervals (5 or more)"
-    ) in words_of(few)
+    words = adaptation_words(few)
+    assert words.title == "Adaptation: T-hook that became L-hook"
+    assert words.caption == (
+        "2 trials with the broken tool; session 3 (reproduce), 2 robots, seed 1000; "
+        "default settings; too few robots for intervals (5 or more)"
+    )
+    assert "too few" not in adaptation_words(COURSE).caption
 
 
 def test_without_a_missing_side_it_says_so() -> None:
     neither = replace(COURSE, broken=(), whole=())
     assert "no rows lie on a missing side" in words_of(neither)
-    assert "whole t-hook" not in words_of(neither)
+    assert "whole T-hook" not in words_of(neither)
 
 
 def test_dollars_are_letters() -> None:

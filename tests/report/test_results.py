@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from affcli.report.figure_titles import results_title
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
@@ -21,6 +20,7 @@ from affcli.analysis.statistics import Spread
 from affcli.core.records import TrialInfo
 from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome
+from affcli.report.captions import results_words
 from affcli.report.figures.canvas import INK, SKY, TWO_COLUMNS, VERMILION, encoded
 from affcli.report.figures.results import results_figure
 from tests.report.hand_made import FOUR_ROBOTS, MANY_ROBOTS, RUNS, session_of, trial_info
@@ -96,7 +96,8 @@ def test_the_figure_shows_means_intervals_and_the_paper_s_counts() -> None:
     *goals, total, broken = figure.axes
     assert figure.get_size_inches()[0] == TWO_COLUMNS
     assert [axes.get_title() for axes in goals] == ["goal 1", "goal 2", "goal 3", "goal 4"]
-    assert [label.get_text() for label in goals[0].get_yticklabels()] == list(TOOLS)
+    names = ["Stick", "L-stick", "L-hook", "T-stick", "T-hook"]
+    assert [label.get_text() for label in goals[0].get_yticklabels()] == names
     for goal, axes in zip(GOALS, goals, strict=True):
         rows = [results.cells[tool, goal] for tool in TOOLS]
         assert [x for x, _ in marks(axes, VERMILION, "D")] == [cell.paper for cell in rows]
@@ -127,8 +128,11 @@ def test_of_fewer_than_forty_robots_each_is_shown() -> None:
     """In the size of how many gave the same; fewer than five have no interval."""
     figure = results_figure(results_of_many(FOUR_ROBOTS))
     words = words_in(figure)
+    assert (
+        "too few robots for intervals (5 or more)"
+        in results_words(results_of_many(FOUR_ROBOTS)).caption
+    )
     assert not {"mean with its 95 % interval, where it has one", "central 95 % of robots"} & words
-    assert any("too few robots for intervals (5 or more)" in text for text in words)
     counts = Counter(FOUR_ROBOTS.cells["stick", "1"])
     dots = {
         x: line.get_markersize()
@@ -145,7 +149,7 @@ def test_one_robot_is_a_dot() -> None:
     cells = {cell: counts[:1] for cell, counts in FOUR_ROBOTS.cells.items()}
     one = replace(FOUR_ROBOTS, robots=1, cells=cells, broken=[14])
     results = results_of_many(one)
-    assert results_title(results).startswith("1 robot, ")
+    assert ", 1 robot, seed 1000; " in results_words(results).caption
     assert {"the paper", "one robot"} <= words_in(results_figure(results))
 
 
@@ -180,16 +184,27 @@ def test_single_robots_have_what_they_tried() -> None:
 def test_where_not_all_starts_were_tried_it_says_how_many() -> None:
     some = [result("stick", "2", start, solved=start == 1) for start in (1, 2, 3)]
     results = single(some, BROKEN[:15])
-    assert results_title(results) == "one robot a tool: run 1 (noisy)"
+    assert results_words(results).caption == (
+        f"one robot a tool: run 1: T-hook, seed {RUNS[0].spec.seed}, sensor noisy"
+    )
     assert results.total is None
     assert results.broken is None
-    *goals, total, broken = results_figure(results).axes
-    assert [text.get_text() for text in goals[1].texts] == ["of 3"]
-    assert marks(goals[1], INK, "o") == [(1.0, 0.0)]
-    assert marks(goals[0], INK, "o") == []
-    assert len(marks(goals[0], VERMILION, "D")) == 5
-    for axes in (total, broken):
-        assert [text.get_text() for text in axes.texts] == ["not all done"]
+    (axes,) = results_figure(results).axes
+    assert [text.get_text() for text in axes.texts] == ["of 3"]
+    assert marks(axes, INK, "o") == [(1.0, 0.0)]
+
+
+def test_what_was_not_tried_is_left_out_or_says_so() -> None:
+    """Tools and goals without a trial have no place; a cell of the others has the paper's count."""
+    some = [result("t-hook", "2", 1), result("stick", "4", 1), result("stick", "4", 2)]
+    figure = results_figure(single(some, []))
+    second, fourth = figure.axes
+    assert [axes.get_title() for axes in (second, fourth)] == ["goal 2", "goal 4"]
+    assert [label.get_text() for label in second.get_yticklabels()] == ["Stick", "T-hook"]
+    assert [text.get_text() for text in second.texts] == ["not tried", "of 1"]
+    assert [text.get_text() for text in fourth.texts] == ["of 2", "not tried"]
+    assert [x for x, _ in marks(second, VERMILION, "D")] == [2, 4]
+    assert marks(second, INK, "o") == [(1.0, 1.0)]
 
 
 def test_dollars_are_letters() -> None:
@@ -208,14 +223,14 @@ def test_any_number_of_goals_and_tools_stands_in_rows_that_fit() -> None:
     }
     figure = results_figure(Results(session_of(5), 2, {}, cells, None, None))
     panels = {axes.get_title(): axes for axes in figure.axes}
-    assert set(panels) == {*(f"goal {n}" for n in range(1, 10)), "all trials", "broken tool"}
+    assert set(panels) == {f"goal {n}" for n in range(1, 10)}
     for goal in range(1, 10):
         axes = panels[f"goal {goal}"]
         assert len(axes.get_yticks()) == 6
         assert len(marks(axes, VERMILION, "D")) == 5
     figure.draw_without_rendering()
     boxes = [axes.get_window_extent() for axes in figure.axes]
-    assert all(box.width > 0.6 * figure.dpi < 1.2 * box.height for box in boxes[:-2])
+    assert all(box.width > 0.6 * figure.dpi < 1.2 * box.height for box in boxes)
 
 
 @pytest.mark.parametrize("robots", [2, 40])
@@ -227,15 +242,14 @@ def test_each_panel_is_out_of_what_was_tried_in_it(robots: int) -> None:
         ("stick", "5"): Beside(None, [5] * robots, 16),
         ("rake", "5"): Beside(None, [4] * robots, 4),
         ("rake", "6"): Beside(None, [1] * robots, 2),
-        ("stick", "7"): Beside(2, [], 0),
     }
     figure = results_figure(Results(session_of(5), robots, {}, cells, None, None))
     panels = {axes.get_title(): axes for axes in figure.axes}
-    labels = {goal: panels[f"goal {goal}"].get_xlabel() for goal in "1567"}
-    of = {"1": 4, "5": 16, "6": 2, "7": 4}
+    labels = {goal: panels[f"goal {goal}"].get_xlabel() for goal in "156"}
+    of = {"1": 4, "5": 16, "6": 2}
     assert labels == {goal: f"successes of {most}" for goal, most in of.items()}
-    said = {goal: [text.get_text() for text in panels[f"goal {goal}"].texts] for goal in "1567"}
-    assert said == {"1": ["of 3"], "5": ["of 4"], "6": [], "7": []}
+    said = {goal: [text.get_text() for text in panels[f"goal {goal}"].texts] for goal in "156"}
+    assert said == {"1": ["of 3"], "5": ["of 4"], "6": ["not tried"]}
     assert panels["goal 1"].get_xlim()[1] < 5.0
     assert panels["goal 5"].get_xlim()[1] > 16.0
 
@@ -257,7 +271,8 @@ def test_of_each_start_the_latest_trial_counts_and_only_the_paper_s_are_compared
     found = single(again, [])
     assert (found.cells["stick", "2"].counts, found.cells["stick", "2"].tried) == ([1], 1)
     assert sum(cell.tried for cell in found.cells.values()) == 1
-    assert results_title(found) == "one robot a tool: run 8 (camera)"
+    assert results_words(found).caption.startswith("one robot a tool: run 8: T-hook, seed ")
+    assert results_words(found).caption.endswith(", sensor camera")
     alone = single(others, BROKEN)
     assert alone.cells == {
         ("stick, nested-query:share=0.05", "2"): Beside(None, [1], 1),
@@ -271,9 +286,10 @@ def test_of_each_start_the_latest_trial_counts_and_only_the_paper_s_are_compared
     assert both.total is None
     assert single([*others, *SOLVED], BROKEN).total == Beside(TOTAL, [80], 80)
     figure = results_figure(both)
-    assert figure.axes[1].get_xlabel() == "successes of 4"
-    assert [label.get_text() for label in figure.axes[0].get_yticklabels()][-3:] == [
-        *("stick, nested-query:share=0.05", "stick, far-corners", "spoon"),
+    assert figure.axes[0].get_xlabel() == "successes of 4"
+    names = [label.get_text().replace("\n", " ") for label in figure.axes[0].get_yticklabels()]
+    assert [name.replace("- ", "-") for name in names] == [
+        *("Stick", "Stick, nested-query:share=0.05", "Stick, far-corners", "Spoon"),
     ]
     figure.draw_without_rendering()
     assert all(axes.get_window_extent().width > 0.4 * figure.dpi for axes in figure.axes)

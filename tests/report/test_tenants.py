@@ -236,7 +236,7 @@ def test_the_page_says_of_tools_only_what_it_counted(page: str) -> None:
 
 def test_an_unknown_tool_is_named_and_the_rest_is_drawn() -> None:
     shown = run_shown(tenants.info(7), list(tenants.SPOONS.rows.values()), 1.5)
-    assert shown.title.endswith("not drawn, for this affcli does not know the shape: spoon")
+    assert shown.words.caption.endswith("not drawn, for this affcli does not know the shape: spoon")
     assert shown.views[0].parts == ()
 
 

@@ -30,7 +30,11 @@ TITLES = 7.0
 HEAD = 0.8
 """Length of the heads of arrows (in of the table)."""
 ENOUGH = 1.4
-"""Width that a panel should have (in); where there is less room two stand side by side."""
+"""Width that a panel should have (in)."""
+LEAST = 0.8
+"""Width that it has at least (in): where more than `MOST_ROWS` would not fit a page, or where
+several tables stand over one another."""
+MOST_ROWS = 4
 MOST_BESIDE = 5
 """Where so many behaviors fit beside one another they all stand so."""
 
@@ -61,14 +65,18 @@ def affordances_figure(
         width: in; what suits it if not given.
     """
     groups = _groups(calls, [_panel_of(row) for view in views for row, _ in view.rows])
-    most = max(2, int((width or TWO_COLUMNS) / ENOUGH) // len(views))
-    shown, columns = _arranged(groups, most)
+    beside = 1 if width is not None and width < len(views) * 2 * ENOUGH else len(views)
+    most = int((width or TWO_COLUMNS) / ENOUGH) // beside
+    if beside < len(views) or sum(map(len, groups)) > most * MOST_ROWS:
+        most = int((width or TWO_COLUMNS) / LEAST) // beside
+    shown, columns = _arranged(groups, max(most, 1))
     width = width or (TWO_COLUMNS if columns * len(views) > 2 else ONE_COLUMN)
+    down = len(views) // beside
     kinds = [status for status in key if any(view.count(status) for view in views)]
     with canvas(width) as figure:
-        room = (width - 0.6) / (columns * len(views)) - 0.05
-        beside = figure.add_gridspec(1, len(views))
-        pages = [figure.add_subfigure(beside[0, number]) for number in range(len(views))]
+        room = (width - 0.6) / (columns * beside) - 0.05
+        grid = figure.add_gridspec(down, beside)
+        pages = [figure.add_subfigure(grid[number]) for number in range(len(views))]
         panels = [
             axes
             for page, view in zip(pages, views, strict=True)
@@ -79,7 +87,7 @@ def affordances_figure(
         # As much to the left as to the right: the wrist stays in the middle.
         half = max(abs(x) for axes in panels for x in axes.dataLim.intervalx)
         panels[0].update_datalim([(-half, 0.0), (half, 0.0)])
-        fit_maps(figure, panels, room=MARGIN, aspects=ASPECTS)
+        fit_maps(figure, panels, room=MARGIN, aspects=ASPECTS, pages=down)
     return figure
 
 
@@ -124,16 +132,18 @@ def _draw_table(
         _draw_panel(axes, view, panel, room)
     if view.heading:
         page.suptitle(wrapped(view.heading, 8.0, columns * room), fontsize=8.0)
-    # The attractor beside the grasp point, to scale: an arrow begins at its middle.
+    _draw_scale(panels[0], view)
+    return panels
+
+
+def _draw_scale(axes: Axes, view: TableView) -> None:
+    """Draw the attractor beside the grasp point, to scale: an arrow begins at its middle."""
     corners = [c for part in (*view.parts, *view.missing) for c in part.outline.vertices]
     radius = view.puck_radius
     left, bottom = (min((c[i] for c in corners), default=0.0) for i in (0, 1))
     place = Point(left - 2 * radius, bottom + radius)
-    draw_puck(panels[0], place, radius, before=True, color=FAINT)
-    panels[0].text(
-        place.x, place.y + 1.2 * radius, "puck", ha="center", va="bottom", fontsize=SMALL
-    )
-    return panels
+    draw_puck(axes, place, radius, before=True, color=FAINT)
+    axes.text(place.x - radius, place.y + 1.2 * radius, "puck", va="bottom", fontsize=SMALL)
 
 
 def _draw_panel(axes: Axes, view: TableView, panel: _Panel, room: float) -> None:

@@ -51,6 +51,8 @@ STYLE: dict[RcKeyType, Any] = {
     "xtick.labelsize": 6.5,
     "ytick.labelsize": 6.5,
     "legend.fontsize": 6.5,
+    "figure.labelsize": 7.0,
+    "figure.titlesize": 8.0,
     "axes.linewidth": 0.6,
     "axes.edgecolor": INK,
     "text.color": INK,
@@ -134,15 +136,21 @@ def encoded(
         raise BadInputError(f"{ending or 'no ending'}: figures are {', '.join(FORMATS)}")
     page = io.BytesIO()
     with style():
+        figure.set_dpi(dpi)
+        figure.draw_without_rendering()
+        figure.set_layout_engine("none")
+        for key in figure.legends:
+            # Below what is drawn, not below the caption.
+            key.set_bbox_to_anchor((0.0, 0.0, 1.0, 1.0), figure.transFigure)
         width, height = map(float, figure.get_size_inches())
         over, under = _strip(title, TITLE_SIZE, width), _strip(caption, CAPTION_SIZE, width)
-        place = {"x": STRIP / width, "in_layout": False, "linespacing": LINE}
+        place: dict[str, Any] = {"x": STRIP / width, "in_layout": False, "linespacing": LINE}
         figure.text(y=1.0 + STRIP / height, s=over[0], va="bottom", fontsize=TITLE_SIZE, **place)
         figure.text(y=-STRIP / height, s=under[0], va="top", fontsize=CAPTION_SIZE, **place)
-        # Whole pixels: Agg leaves out parts of one, and 3.3 * 200 may be a little less than 660.
-        high = math.ceil((over[1] + height + under[1]) * dpi) / dpi
-        low = -under[1]
-        box = Bbox([[0.0, low], [(round(width * dpi) + 0.01) / dpi, low + high + 0.01 / dpi]])
+        # Whole pixels, and a little more: Agg leaves out parts of one.
+        across, up = round(width * dpi), math.ceil((over[1] + height + under[1]) * dpi)
+        more = 0.01 if kind == "png" else 0.0
+        box = Bbox.from_bounds(0.0, -under[1], (across + more) / dpi, (up + more) / dpi)
         figure.savefig(page, format=kind, dpi=dpi, bbox_inches=box, metadata=METADATA[kind])
     return page.getvalue()
 
@@ -170,9 +178,12 @@ def width_of(words: str, size: float) -> float:
 
 def wrapped(words: str, size: float, width: float) -> str:
     """Return words broken into lines that are at most so wide (in), between words if they can."""
-    lines = words.split("\n")
-    for letters in range(max(map(len, lines)), 0, -1):
-        broken = [part for line in lines for part in textwrap.wrap(line, letters) or [""]]
-        if max(width_of(line, size) for line in broken) <= width:
-            return "\n".join(broken)
-    return words
+    return "\n".join(_broken(line, size, width) for line in words.split("\n"))
+
+
+def _broken(line: str, size: float, width: float) -> str:
+    for letters in range(len(line), 1, -1):
+        parts = textwrap.wrap(line, letters)
+        if max((width_of(part, size) for part in parts), default=0.0) <= width:
+            return "\n".join(parts)
+    return line

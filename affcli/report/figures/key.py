@@ -31,7 +31,7 @@ def draw_key(
         place: where; the figure makes room for it.
         size: of the letters (points).
     """
-    longest = max(width_of(words, size) for _, words in entries)
+    longest = max(width_of(line, size) for _, words in entries for line in words.split("\n"))
     column = longest + (HANDLE + 2.5) * size / 72.0
     return figure.legend(
         [handle for handle, _ in entries],

@@ -101,7 +101,9 @@ def bands_figure(kinds: Sequence[ToolCurves], width: float | None = None) -> Fig
                 one.tick_params(labelleft=number % columns == 0)
                 if one is not first:
                     one.sharey(first)
-            name = f"{tool_words(kind.tool)} ({many(kind.robots, 'robot')})"
+            name = tool_words(kind.tool)
+            if len({one.robots for one in kinds}) > 1:
+                name += f" ({many(kind.robots, 'robot')})"
             pair[0].set_title(wrapped(name, 7.0, (width - 0.5) / columns - 0.05), fontsize=7.0)
             pair[1].tick_params(labelbottom=True)
             if number % columns == 0:

@@ -20,7 +20,13 @@ def columns_for(count: int, most: int) -> int:
 def map_panels(
     figure: FigureBase, count: int, columns: int, labels: tuple[str, str] = ("x (in)", "y (in)")
 ) -> list[Axes]:
-    """Add `count` panels in rows of `columns`; the outer ones are labelled."""
+    """Add `count` panels in rows of `columns`, labelled once below and once on the left."""
+    if isinstance(figure, Figure):
+        # In a page of its own: a key below the figure would lie over the label otherwise.
+        figure = figure.add_subfigure(figure.add_gridspec(1, 1)[0])
+    if any(labels):
+        figure.supxlabel(labels[0])
+        figure.supylabel(labels[1])
     grid = figure.subplots(math.ceil(count / columns), columns, squeeze=False)
     panels, spare = grid.flat[:count], grid.flat[count:]
     for axes in spare:
@@ -28,13 +34,16 @@ def map_panels(
     for number, axes in enumerate(panels):
         left, last = number % columns == 0, number + columns >= count
         axes.tick_params(labelleft=left, labelbottom=last)
-        axes.set_ylabel(labels[1] if left else "")
-        axes.set_xlabel(labels[0] if last else "")
     return list(panels)
 
 
 def fit_maps(
-    figure: Figure, panels: Sequence[Axes], *, room: float, aspects: tuple[float, float]
+    figure: Figure,
+    panels: Sequence[Axes],
+    *,
+    room: float,
+    aspects: tuple[float, float],
+    pages: int = 1,
 ) -> None:
     """Let all panels show the same part of the plane, and give the figure the height they need.
 
@@ -43,6 +52,7 @@ def fit_maps(
         panels: with all that is drawn in them.
         room: around what is drawn (in of the table).
         aspects: height over width of a panel, at least and at most.
+        pages: grids of panels, of as many rows each, that stand over one another.
     """
     drawn = [axes.dataLim for axes in panels if axes.has_data()]
     box = Bbox.union(drawn).padded(room)
@@ -56,6 +66,7 @@ def fit_maps(
             axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
     one, aspect = panels[0], half_height / half_width
     rows, columns = _grid_of(one)
+    rows *= pages
     # Room for the panels at the full width, and more than enough for words. Until the height is
     # right the panels fill their cells: what stands beside a smaller one would take no room.
     figure.set_figheight(rows * (aspect * figure.get_figwidth() / columns + 0.5) + 2.0)

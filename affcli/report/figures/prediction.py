@@ -46,13 +46,15 @@ def prediction_figure(pushes: Sequence[Push], width: float | None = None) -> Fig
         panels = figure.subplots(rows, columns, squeeze=False).flat
         shares, inches, degrees = panels
         _draw_shares(shares, growing)
-        shares.set_title("is there a movement?")
-        _draw_errors(inches, growing, "inches", "error of the hits (in)")
-        inches.set_title("where to?")
-        _draw_errors(degrees, growing, "degrees", "error of the hits (deg)")
-        degrees.set_title("in which direction?")
+        shares.set_title("hits and false alarms")
+        _draw_errors(inches, growing, "inches", "error (in)")
+        inches.set_title("displacement of the hits")
+        _draw_errors(degrees, growing, "degrees", "error (deg)")
+        degrees.set_title("direction of the hits")
         for axes in (shares, inches, degrees):
             _rows_axis(axes, growing)
+            if rows > 1:
+                axes.label_outer()
         draw_key(figure, _key(shares, inches))
     return figure
 
@@ -116,10 +118,6 @@ def _draw_errors(axes: Axes, growing: Sequence[Score], kind: str, label: str) ->
             )
     # What is off by nothing lies on the axis.
     axes.set_yscale("log", nonpositive="clip")
-    lowest = min(
-        (v for line in axes.lines for v in map(float, line.get_ydata()) if v > 0), default=1
-    )
-    axes.set_ylim(bottom=0.7 * lowest)
     axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=9))
     axes.yaxis.set_major_formatter("{x:g}")
     axes.yaxis.set_minor_locator(NullLocator())

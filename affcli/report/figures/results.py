@@ -164,7 +164,8 @@ def _draw_ours(axes: Axes, y: float, beside: Beside) -> None:
 
 def _limits(beside: Beside) -> tuple[float, float]:
     """Return how far the axis of one row reaches: from below all that is drawn to all solved."""
-    low = min([*beside.counts, *([] if beside.paper is None else [beside.paper])])
+    known = [*beside.counts, *([] if beside.paper is None else [beside.paper])]
+    low = min(*known, 0.75 * beside.tried)
     room = max(1.0, 0.1 * (beside.tried - low))
     return low - room, beside.tried + 0.4 * room
 

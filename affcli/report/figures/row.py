@@ -27,8 +27,8 @@ from affcli.report.words import parameter_words
 HEADINGS = (
     "Grasping behavior and its parameters",
     "Exploratory behavior and its parameters",
-    r"$O_\mathrm{start}$",
-    r"$O_\mathrm{end}$",
+    r"$O_\mathrm{start}$ (in)",
+    r"$O_\mathrm{end}$ (in)",
     "Replication probability",
 )
 NARROWEST = 1.1
