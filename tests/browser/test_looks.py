@@ -88,9 +88,9 @@ def test_no_list_is_cut_without_a_sign(opened: Opened, path: Path, width: int) -
 def test_a_wide_screen_has_columns(opened: Opened, life: Path) -> None:
     """Film, reasons and procedure stand side by side, answers beside tables."""
     page = opened(life, viewport={"width": 1400, "height": 900})
-    places = [page.locator(f"#player {one}").bounding_box() for one in (".film", "#why", "#flow")]
-    found = [place for place in places if place is not None]
-    assert len({round(place["y"] / 60) for place in found}) == 1
+    columns = [page.locator(f"#player .{one}") for one in ("film", "reasons", "procedure")]
+    found = [place for place in (one.bounding_box() for one in columns) if place is not None]
+    assert len({place["y"] for place in found}) == 1
     assert [place["x"] for place in found] == sorted(place["x"] for place in found)
     assert found[-1]["x"] + found[-1]["width"] > 1300
 

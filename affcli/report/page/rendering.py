@@ -39,7 +39,7 @@ KINDS = {
     Outcome.STEP_LIMIT.value: "still trying when its steps ran out; the paper names no limit",
 }
 """How trials fail."""
-VARIED = ("robot", "tasks", "planner", "sensor")
+VARIED = ("tasks", "planner", "sensor")
 """What the list of trials has a column for where it is not always the same."""
 FEW = 3
 """Tries in vain that show what adaptation is."""
