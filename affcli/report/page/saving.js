@@ -50,7 +50,7 @@
     // Taken away it is dark on light, whatever the page is.
     document.documentElement.classList.add("light");
     const drawn = [...of.querySelectorAll("svg")].filter((one) => one.viewBox.baseVal), across = Math.min(4, drawn.length);
-    const [, , wide, high] = drawn[0].getAttribute("viewBox").split(" ").map(Number), width = drawn.length > 1 ? 260 : 640, height = (width * high) / wide;
+    const [, , wide, high] = drawn[0].getAttribute("viewBox").split(" ").map(Number), width = drawn.length > 1 ? 260 : 640, height = Math.round((width * high) / wide);
     const whole = { width: across * (width + 10) + 10, height: Math.ceil(drawn.length / across) * (height + 30) + 10 };
     for (const [key, value] of Object.entries({ xmlns: NS, ...whole, viewBox: `0 0 ${whole.width} ${whole.height}` })) root.setAttribute(key, value);
     root.append(alone(document.getElementById("heads")));
