@@ -195,7 +195,7 @@ def test_on_paper_everything_is_unfolded_and_nothing_asks_to_be_pressed(
     assert (ink, ground) == (0, 255)
     # All trials, not only those that fit into the scrolled box; with their numbers.
     last = page.locator("#list tbody tr").last
-    box, around = last.bounding_box(), page.locator("#trials .tall").bounding_box()
+    box, around = last.bounding_box(), page.locator("#trials .scroll.tall").bounding_box()
     assert box is not None
     assert around is not None
     assert box["y"] + box["height"] <= around["y"] + around["height"] + 1
