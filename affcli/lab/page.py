@@ -33,7 +33,7 @@ class _Shown:
         name: whose trials can be replayed, in words.
         filmed, others: their learning runs, and those of others to choose from.
         trials, their_trials: of the former and of the latter.
-        left_out: trials of the former that are not shown.
+        left_out: trials that are not shown, for later ones of their kind are.
         not_shown: robots that are not shown at all.
     """
 
@@ -137,15 +137,18 @@ def _own(store: Store, numbers: Sequence[int]) -> _Shown | None:
         room = MOST_ROBOTS - sum(run.spec.tool == tool for run in filmed)
         more = [run for run in reversed(done) if run.spec.tool == tool and run.id not in ids]
         others += more[:room]
-    every = [trial for run in ids for trial in store.trials.trials(run_id=run)]
-    theirs = [trial for run in others for trial in store.trials.trials(run_id=run.id)]
-    trials = _latest(every, ids)
-    seeds = list(dict.fromkeys(_robot(run) for run in filmed))
-    name = f"the robot{'s' if len(seeds) > 1 else ''} of {', '.join(seeds)}"
+    stored = [
+        [trial for run in some for trial in store.trials.trials(run_id=run.id)]
+        for some in (filmed, others)
+    ]
+    mine, theirs = _latest(stored[0], filmed), _latest(stored[1], others)
+    names = list(dict.fromkeys(_robot(run) for run in filmed))
+    own = all(run.session_id is None for run in filmed)
+    whose = f"the robot{'s' if len(names) > 1 else ''} of " if own else ""
     return _Shown(
-        *(name, filmed, others, trials),
-        *(_latest(theirs, [run.id for run in others]), len(every) - len(trials)),
-        sum(run.spec.tool in latest for run in done) - len(filmed) - len(others),
+        *(whose + ", ".join(names), filmed, others, mine, theirs),
+        left_out=sum(map(len, stored)) - len(mine) - len(theirs),
+        not_shown=sum(run not in others and run.id not in ids for run in done),
     )
 
 
@@ -206,7 +209,7 @@ def _with_predictions(store: Store, learned: LearnedRows) -> LearnedRows:
         return replace(learned, not_asked=str(error))
 
 
-def _latest(trials: Iterable[TrialInfo], runs: Sequence[int]) -> list[TrialInfo]:
+def _latest(trials: Iterable[TrialInfo], runs: Sequence[LearningRunInfo]) -> list[TrialInfo]:
     """Return the latest trial of each kind: by run, goal and start, whole tools first.
 
     Of the trials with a whole tool those of `solve`, which go on with the counters as they are,
@@ -215,14 +218,15 @@ def _latest(trials: Iterable[TrialInfo], runs: Sequence[int]) -> list[TrialInfo]
     by_kind: dict[tuple[object, ...], TrialInfo] = {}
     for trial in sorted(trials, key=lambda t: (t.spec.counters is Counters.STORED, t.id)):
         spec = trial.spec
-        kind = (spec.protocol, spec.tool, spec.shape, spec.task.task_set, spec.goal, spec.start)
-        by_kind[(*kind, str(spec.planner), spec.sensor)] = trial
+        kind = trial.run_id, spec.protocol, spec.shape, str(spec.planner), spec.sensor
+        by_kind[(*kind, spec.task.task_set, spec.goal, spec.start)] = trial
+    order = [run.id for run in runs]
     goals = in_order(trial.spec.goal for trial in by_kind.values())
     starts = in_order(trial.spec.start for trial in by_kind.values())
 
     def place(trial: TrialInfo) -> tuple[object, ...]:
         spec = trial.spec
-        which = (runs.index(trial.run_id), goals.index(spec.goal), starts.index(spec.start))
+        which = (order.index(trial.run_id), goals.index(spec.goal), starts.index(spec.start))
         return (spec.shape != spec.tool, *which, trial.id)
 
     return sorted(by_kind.values(), key=place)

@@ -88,9 +88,9 @@ def test_no_list_is_cut_without_a_sign(opened: Opened, path: Path, width: int) -
 def test_a_wide_screen_has_columns(opened: Opened, life: Path) -> None:
     """Film, reasons and procedure stand side by side, answers beside tables."""
     page = opened(life, viewport={"width": 1400, "height": 900})
-    places = [page.locator(f"#player {one}").bounding_box() for one in (".film", "#why", "#flow")]
-    found = [place for place in places if place is not None]
-    assert len({round(place["y"] / 60) for place in found}) == 1
+    columns = [page.locator(f"#player .{one}") for one in ("film", "reasons", "procedure")]
+    found = [place for place in (one.bounding_box() for one in columns) if place is not None]
+    assert len({place["y"] for place in found}) == 1
     assert [place["x"] for place in found] == sorted(place["x"] for place in found)
     assert found[-1]["x"] + found[-1]["width"] > 1300
 
@@ -195,7 +195,7 @@ def test_on_paper_everything_is_unfolded_and_nothing_asks_to_be_pressed(
     assert (ink, ground) == (0, 255)
     # All trials, not only those that fit into the scrolled box; with their numbers.
     last = page.locator("#list tbody tr").last
-    box, around = last.bounding_box(), page.locator("#trials .tall").bounding_box()
+    box, around = last.bounding_box(), page.locator("#trials .scroll.tall").bounding_box()
     assert box is not None
     assert around is not None
     assert box["y"] + box["height"] <= around["y"] + around["height"] + 1

@@ -149,14 +149,22 @@ def test_the_latest_run_of_a_tool_is_shown_with_its_films_and_others_without(
     ]
     assert content.replays == []
     (listed,) = content.others
+    assert content.left_out == 0
     assert (listed.run_id, listed.spec.goal, listed.spec.start) == (run.id, "2", "1")
     assert content.robot == "the robot of seed 3"
+    # Trials of one kind of two runs do not stand for each other.
+    counted(solving(store, run, "2", "1"))
+    counted(solving(store, again, "2", "1"))
+    both = content_of(store, runs=[run.id, again.id])
+    assert [replay.run_id for replay in both.replays] == [run.id, again.id]
+    assert both.left_out == 1
+    listed = store.trials.trial(2)
     asked = content_of(store, runs=[run.id])
     assert [(tool.run.id, tool.filmed) for tool in asked.tools] == [
         *((run.id, True), (again.id, False)),
     ]
     assert [replay.trial_id for replay in asked.replays] == [listed.id]
-    assert asked.others == []
+    assert [trial.run_id for trial in asked.others] == [again.id]
     page = render(content, "")
     assert "<option>seed 3</option><option>seed 0</option>" in page
     assert "Films are here of the robot of seed 3" in page

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from affcli.analysis.prediction import Errors, Prediction, Push, Score, scores
 from affcli.core.observation import Movement
-from affcli.report.prediction import prediction_json, prediction_tables
+from affcli.report.prediction import prediction_json, prediction_tables, predictions_table
 from tests.report.drawn import drawn
 
 NONE = Movement(0.0, 0.0, 0.0)
@@ -104,3 +104,16 @@ def test_where_nothing_moved_there_is_nothing_to_share() -> None:
     (line,) = (line.split() for line in text.splitlines() if line.split()[:1] == ["5"])
     assert line[1] == "-"
     assert line[-4:] == ["-"] * 4
+
+
+def test_whole_tables_stand_in_one_row_each() -> None:
+    """Not what they were after their first rows."""
+    grown = [
+        one._replace(predicted={2: Prediction(NONE, NONE), **one.predicted}) for one in HAND_MADE
+    ]
+    table = predictions_table([("robot 3", "t-hook", grown), ("seed 0", "stick", HAND_MADE[3:])])
+    assert table.rows[0][:4] == ("robot 3", "t-hook", "6", "3")
+    assert table.rows[0][4:] == (
+        *("0.67 (0.21 to 0.94)", "0.33 (0.06 to 0.79)", "0.0", "0.0", "1.00", "1.00"),
+    )
+    assert table.rows[1] == ("seed 0", "stick", "3", "0", "-", "0.33 (0.06 to 0.79)", *("-",) * 4)

@@ -12,9 +12,15 @@ from affcli.core.affordance import PROBABILITY_THRESHOLD
 from affcli.core.behavior import Execution, ExecutionStatus
 from affcli.core.geometry import Point, Pose
 from affcli.core.observation import movement
+from affcli.core.results import VerificationResult
 from affcli.core.specs import VerificationSpec
 from affcli.core.verification import ReplicationRecord
-from affcli.report.verification import MOST_ROWS, verification_json, verification_tables
+from affcli.report.verification import (
+    MOST_ROWS,
+    verification_json,
+    verification_tables,
+    verifications_table,
+)
 from tests.factories import affordance, observation, tool_named
 from tests.report.drawn import drawn
 from tests.report.hand_made import call
@@ -135,3 +141,31 @@ def test_without_live_rows_there_is_nothing_to_share() -> None:
     value = verification_json(EXCLUDED)
     assert value["verdict"] == "undecided"
     assert value["by_behavior"] == value["by_region"] == value["drifted"] == []
+
+
+def test_stored_verifications_stand_in_one_row_each() -> None:
+    """One that was interrupted has no verdict, one that could not tell has no try to name."""
+    table = verifications_table(
+        [
+            VerificationResult(
+                *(1, 4, "t-hook", "l-hook", "noisy", "tool has changed", 158, 30, 12, 617.0)
+            ),
+            VerificationResult(2, 4, "t-hook", "t-hook", "camera", None, 3, 0, None, None),
+        ]
+    )
+    assert table.rows == [
+        *(
+            (
+                "4",
+                "t-hook",
+                "l-hook",
+                "noisy",
+                "158",
+                "30",
+                "tool has changed",
+                "12",
+                "10 min 17 s",
+            ),
+        ),
+        *(("4", "t-hook", "t-hook", "camera", "3", "0", "interrupted", "-", "-"),),
+    ]

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from typing import Any
 
 from affcli.analysis.curves import Curve, ToolCurves
 from affcli.report.page.content import LearnedRows
@@ -12,53 +12,44 @@ WIDTH, HEIGHT = 100.0, 60.0
 MOST_TICKS = 5
 
 
-@dataclass(frozen=True, slots=True)
-class Chart:
-    """The learning runs of one tool, in units of the chart, y upward.
-
-    Args:
-        tool: its name.
-        across, up: ticks of the axes: where, and what stands there.
-        lines: for each run whose it is, in words that go with it, and its course.
-        band, mean: of all robots of a reproduction; empty without one.
-    """
-
-    tool: str
-    across: Sequence[tuple[float, int]]
-    up: Sequence[tuple[float, int]]
-    lines: Sequence[tuple[str, str, str]]
-    band: str
-    mean: str
-
-
 def charts(
     tools: Sequence[LearnedRows], curves: Mapping[int, Curve], bands: Mapping[str, ToolCurves]
-) -> list[Chart]:
-    """Return a chart for each tool, all with the same axes, in the order of the tools."""
-    timed = [learned for learned in tools if learned.run.id in curves]
-    minutes = max((curves[one.run.id].minutes[-1] for one in timed), default=1.0)
-    rows = max((curves[one.run.id].rows[-1] for one in timed), default=1.0)
-    rows = max(1.0, rows, *(max(band.rows.high) for band in bands.values()))
+) -> list[dict[str, Any]]:
+    """Return a chart for each tool, all with the same axes, in the order of the tools.
+
+    Its lines are in units of the chart, y upward: for each run whose it is, how it went in words,
+    and its course; then the mean and the central 95 % of all robots, empty without a reproduction.
+    """
+    timed = [(one, curves[one.run.id]) for one in tools if one.run.id in curves]
+    minutes = max((curve.minutes[-1] for curve in curves.values()), default=1.0)
+    highest = [max(band.rows.high) for band in bands.values()]
+    rows = max([1.0, *highest, *(curve.rows[-1] for curve in curves.values())])
 
     def points(x: Iterable[float], y: Iterable[float]) -> str:
         scaled = zip(x, y, strict=True)
         return " ".join(f"{WIDTH * a / minutes:.1f},{HEIGHT * b / rows:.1f}" for a, b in scaled)
 
     made = []
-    for tool in dict.fromkeys(one.run.spec.tool for one in timed):
+    for tool in dict.fromkeys(one.run.spec.tool for one, _ in timed):
         band = bands.get(tool)
-        lines = []
-        for one in timed:
-            if one.run.spec.tool == tool:
-                curve = curves[one.run.id]
-                lines.append((one.robot, _words(one, curve), points(curve.minutes, curve.rows)))
-        around = mean = ""
+        low = high = mean = ""
         if band is not None:
-            low, high = (points(band.minutes, edge) for edge in (band.rows.low, band.rows.high))
-            around = f"{high} {' '.join(reversed(low.split()))}"
-            mean = points(band.minutes, band.rows.mean)
-        across, up = _ticks(minutes, WIDTH), _ticks(rows, HEIGHT)
-        made.append(Chart(tool, across, up, lines, around, mean))
+            edges = (band.rows.low, band.rows.high, band.rows.mean)
+            low, high, mean = (points(band.minutes, edge) for edge in edges)
+        made.append(
+            {
+                "tool": tool,
+                "across": _ticks(minutes, WIDTH),
+                "up": _ticks(rows, HEIGHT),
+                "lines": [
+                    (one.robot, _words(one, curve), points(curve.minutes, curve.rows))
+                    for one, curve in timed
+                    if one.run.spec.tool == tool
+                ],
+                "band": f"{high} {' '.join(reversed(low.split()))}".strip(),
+                "mean": mean,
+            }
+        )
     return made
 
 

@@ -46,7 +46,7 @@ KINDS = {
     Outcome.STEP_LIMIT.value: "still trying when its steps ran out; the paper names no limit",
 }
 """How trials fail."""
-VARIED = ("robot", "tasks", "planner", "sensor")
+VARIED = ("tasks", "planner", "sensor")
 """What the list of trials has a column for where it is not always the same."""
 FEW = 3
 """Tries in vain that show what adaptation is."""
@@ -144,7 +144,8 @@ def more_robots(content: Content) -> str:
     if not content.others and not content.not_shown:
         return ""
     option = "--run ID" if content.tools[0].run.session_id is None else "--robot N"
-    not_shown = f" {content.not_shown} more are in the database." if content.not_shown else ""
+    more = content.not_shown
+    not_shown = f" {more} more {'are' if more > 1 else 'is'} in the database." if more else ""
     return (
         f"Films are here of {content.robot}; of others affcli report --html FILE {option} makes "
         f"them.{not_shown}"

@@ -1,6 +1,8 @@
 (() => {
   /** Let what the page shows be taken away: pictures as SVG, tables and data as CSV or JSON. */
-  const LOOKS = ["fill", "stroke", "stroke-width", "stroke-dasharray", "stroke-linecap", "stroke-linejoin", "opacity", "font-size", "font-family", "text-anchor", "marker-end", "visibility"];
+  // What a look is where nothing says otherwise; only what differs is written.
+  const LOOKS = { fill: "rgb(0, 0, 0)", stroke: "none", "stroke-width": "1px", "stroke-dasharray": "none", "stroke-linecap": "butt", "stroke-linejoin": "miter", opacity: "1", "marker-end": "none", visibility: "visible" };
+  const OF_TEXT = { "font-size": "", "font-family": "", "text-anchor": "start" };
   const stem = document.title.split(": ").slice(1).join(": ").replace(/\.[^.]*$/, "").replace(/[^\w-]+/g, "-") || "affcli";
 
   function save(name, type, text) {
@@ -28,8 +30,10 @@
     const copy = node.cloneNode(true), originals = [node, ...node.querySelectorAll("*")];
     [copy, ...copy.querySelectorAll("*")].forEach((one, i) => {
       const looks = getComputedStyle(originals[i]);
-      one.setAttribute("style", LOOKS.filter((name) => looks.getPropertyValue(name)).map((name) => `${name}:${looks.getPropertyValue(name).replaceAll('"', "'")}`).join(";"));
-      for (const name of ["class", "role", "aria-label", "aria-labelledby", "tabindex"]) one.removeAttribute(name);
+      const usual = originals[i].localName === "text" ? { ...LOOKS, ...OF_TEXT } : LOOKS;
+      const own = Object.keys(usual).map((name) => [name, looks.getPropertyValue(name).replaceAll('"', "'")]).filter(([name, look]) => look !== usual[name]);
+      if (own.length) one.setAttribute("style", own.map((pair) => pair.join(":")).join(";"));
+      for (const name of ["class", "role", "aria-label", "aria-labelledby", "data-part", "data-used", "data-row", "data-trials", "data-robot"]) one.removeAttribute(name);
     });
     for (const use of copy.querySelectorAll("use")) use.replaceWith(alone(document.querySelector(use.getAttribute("href"))));
     return copy;
@@ -46,7 +50,7 @@
     // Taken away it is dark on light, whatever the page is.
     document.documentElement.classList.add("light");
     const drawn = [...of.querySelectorAll("svg")].filter((one) => one.viewBox.baseVal), across = Math.min(4, drawn.length);
-    const [, , wide, high] = drawn[0].getAttribute("viewBox").split(" ").map(Number), width = drawn.length > 1 ? 260 : 640, height = (width * high) / wide;
+    const [, , wide, high] = drawn[0].getAttribute("viewBox").split(" ").map(Number), width = drawn.length > 1 ? 260 : 640, height = Math.round((width * high) / wide);
     const whole = { width: across * (width + 10) + 10, height: Math.ceil(drawn.length / across) * (height + 30) + 10 };
     for (const [key, value] of Object.entries({ xmlns: NS, ...whole, viewBox: `0 0 ${whole.width} ${whole.height}` })) root.setAttribute(key, value);
     root.append(alone(document.getElementById("heads")));
