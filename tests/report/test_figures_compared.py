@@ -37,17 +37,19 @@ def test_each_difference_stands_in_its_row_with_its_interval() -> None:
         "stick, goal 1",
         "t-hook, goal 1",
     ]
-    points = {
-        float(line.get_ydata()[0]): (float(line.get_xdata()[0]), line.get_markerfacecolor())
-        for line in cells.lines
+    lines = [(line, np.column_stack(line.get_data())) for line in cells.lines]
+    marks = {
+        float(at[0][1]): (float(at[0][0]), line.get_markerfacecolor())
+        for line, at in lines
         if line.get_marker() == "o"
     }
     stick, hook = ONE.cells
-    assert points == {0.0: (stick.mean, INK), 1.0: (hook.mean, "white")}
+    assert marks == {0.0: (stick.mean, INK), 1.0: (hook.mean, "white")}
     assert (stick.significant, hook.significant) == (True, False)
-    bars = [list(line.get_xdata()) for line in cells.lines if len(line.get_xdata()) == 2]
-    assert [hook.interval[0], hook.interval[1]] in [[float(x) for x in bar] for bar in bars]
+    assert hook.interval is not None
     assert stick.interval is None
+    bars = [tuple(at[:, 0]) for _, at in lines if len(at) == 2 and at[0][1] == 1.0]
+    assert bars == [hook.interval]
     assert "not drawn: 1 the same in all robots" in "\n".join(texts(figure))
     assert "solved by a robot: two moves less paper" in texts(figure)
 
