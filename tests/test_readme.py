@@ -147,7 +147,16 @@ def is_whole(command: str) -> bool:
     needed = {"figure": "--out", "solve": "--goal", "learn": "--tool"}.get(words[0])
     if needed is not None:
         return needed in given
-    incomplete = {("compare",), ("power",), ("replay",), ("sql",), ("table",), ("db",), ("camera",), ("camera", "locate")}
+    incomplete = {
+        ("compare",),
+        ("power",),
+        ("replay",),
+        ("sql",),
+        ("table",),
+        ("db",),
+        ("camera",),
+        ("camera", "locate"),
+    }
     return words not in incomplete or len(given) > 1 + len(words)
 
 

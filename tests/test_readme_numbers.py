@@ -14,6 +14,7 @@ ADAPTATION = "experiments/tool_adaptation/README.md"
 CAMERA = "experiments/camera/README.md"
 VERIFICATION = "experiments/verification/README.md"
 SPEED = "experiments/speed/README.md"
+ANALYSIS = "affcli/analysis/README.md"
 
 
 def measured(path: str) -> Any:
@@ -210,3 +211,38 @@ def test_the_table_of_speed() -> None:
         ),
     }.items():
         assert rows[name].startswith(f"| {name} | {expected}"), (rows[name], expected)
+
+
+def rate(result: dict[str, Any]) -> str:
+    """Return of 100 intervals how many were right, and how many of 100 studies gave one."""
+    return f"{result['right']:.1f} ({result['given']:.0f})"
+
+
+def test_how_often_intervals_tests_and_powers_were_right() -> None:
+    """Also that they were: the bars of the README are met by its numbers."""
+    found, lines = measured("intervals/results.json"), text_of(ANALYSIS).splitlines()
+    totals = ("total of 80", "difference of 80", "difference of 2, simulated")
+    of_16 = ("total of 16", "difference of 16", "single cells")
+    for robots, means in found["means"].items():
+        shares, alarms = found["shares"][robots], found["alarms"][robots]
+        cells = [rate(means[name]) for name in (*totals, *of_16)]
+        cells += [f"{shares[f'{name}, at least']:.1f}" for name in ("exact", "Wilson")]
+        together = shares["trials that share a robot"]["right"]
+        assert f"| {robots} | {' | '.join([*cells, f'{together:.1f}'])} |" in lines
+        assert all(93.0 <= means[name]["right"] <= 97.0 for name in totals)
+        assert all(means[name]["right"] >= 93.0 for name in of_16)
+        assert min(shares["exact, at least"], together) >= 93.0
+        worlds = (alarms[name] for name in ("conditions swapped", "simulated", "other spread"))
+        kinds = ("total", "any cell", "not corrected")
+        told = [[world[kind] for kind in kinds] for world in worlds]
+        numbers = [f"{value:.1f}" for world in told for value in world]
+        assert f"| {robots} | {' | '.join(numbers)} |" in lines
+        assert all(value <= 5.0 for *corrected, _ in told for value in corrected)
+    for one in found["powers"]:
+        line = f"| {one['of']} | {one['difference']:g} | {one['robots']} | {one['seen']:.1f} |"
+        assert line in lines
+        assert 75.0 <= one["seen"] <= 85.0
+    wrong = max(
+        means["single cells"]["given and wrong, at most"] for means in found["means"].values()
+    )
+    assert f"in at most {wrong:.1f} of 100 studies" in flowing(ANALYSIS)

@@ -196,7 +196,7 @@ def _marked(words: str, counts: Sequence[int], paper: int) -> Text:
 def _note(robots: int) -> str:
     """Return what the mark means, or how many robots it takes."""
     if robots < ENOUGH_ROBOTS:
-        return f"from {ENOUGH_ROBOTS} robots on, ! marks where the paper's count lies outside"
+        return f"! from {ENOUGH_ROBOTS} robots on: the paper's count lies outside"
     return "! = the paper's count lies outside"
 
 

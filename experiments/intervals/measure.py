@@ -229,12 +229,8 @@ def alarms(world: World, rng: np.random.Generator, studies: int, robots: int) ->
         judged = [_judged(world, draw(rng, robots)) for _ in range(studies)]
         found[name] = {
             "total": _percent(total.p <= LEVEL for total, _ in judged),
-            "any cell, corrected": _percent(
-                any(c.significant for c in cells) for _, cells in judged
-            ),
-            "any cell, not corrected": _percent(
-                any(c.p <= LEVEL for c in cells) for _, cells in judged
-            ),
+            "any cell": _percent(any(c.significant for c in cells) for _, cells in judged),
+            "not corrected": _percent(any(c.p <= LEVEL for c in cells) for _, cells in judged),
         }
     return found
 

@@ -112,9 +112,9 @@ def _key(result: Comparison, names: Sequence[str]) -> list[tuple[Artist, str]]:
             for name, (color, mark) in zip(names, LOOKS, strict=False)
         ]
     hollow = Line2D([], [], color=INK, marker="o", markerfacecolor="white", **dot)
-    entries.append((hollow, "mean difference"))
+    entries.append((hollow, "mean difference, not significant"))
     if any(one.significant for one in drawn):
-        entries.append((Line2D([], [], color=INK, marker="o", **dot), "significant (corrected)"))
+        entries.append((Line2D([], [], color=INK, marker="o", **dot), "significant, corrected"))
     if any(one.interval for one in drawn):
         entries.append(
             (Line2D([], [], color=INK, linewidth=0.9), "95 % interval, where it has one")
