@@ -54,5 +54,14 @@ FAULTS = {
     35: "A reader who leaves (`| head`), no terminal, 40 columns, NO_COLOR: a clean end, and text "
     "that can be read.",
     36: "A seed of 2^63, or a negative one: 4.",
+    37: "A command is killed between two commits, or within one (`tests/states/kinds.py` lists "
+    "what that leaves): every command that reads does so or says in one line why not; `affcli db "
+    "check` names what is unfinished; the same command goes on.",
+    39: "Something is to be resumed where nothing was interrupted: refused, and no file is made.",
+    43: "The clock goes back, or stands in another century: results are the same, and the order in "
+    "which things were begun decides which is the latest.",
+    44: "Killed commands leave files half written: the next command that writes the same one "
+    "removes those that are an hour old.",
+    45: "A signal in the first moment, before affcli listens to any: it ends silently, 130 or 143.",
 }
 """What happens, and what must follow, by number."""
