@@ -3,8 +3,8 @@
 A test that is about one of them says so with ``@pytest.mark.fault(number)``; `tests/test_faults.py`
 sees to it that each has one. Exit codes: 2 usage, 3 database, 4 bad input. Always: one line on
 stderr that says what is wrong, where, and what to do; never a traceback; nothing that was saved is
-lost. The numbers left out stand for what affcli does not have yet: downgrades, tools and plug-ins
-of one's own, databases on a server.
+lost. The numbers left out stand for what affcli does not have yet: tools and plug-ins of one's own,
+databases on a server.
 """
 
 FAULTS = {
@@ -28,6 +28,8 @@ FAULTS = {
     10: "A migration fails: the copy that was made before is named, and can be used; the database "
     "is as it was.",
     11: "The schema is newer than the program: 3, both revisions are named, nothing is written.",
+    12: "A schema is to be taken back to an older one, which lacks room for what is there: 3, "
+    "nothing is written, and the copy from before the upgrade is named.",
     13: "No database, a truncated one, one with a damaged page: 3, and the file is left untouched.",
     14: "The file is empty, or another program's: writing makes a database of the first; the other "
     "is refused.",
@@ -54,5 +56,14 @@ FAULTS = {
     35: "A reader who leaves (`| head`), no terminal, 40 columns, NO_COLOR: a clean end, and text "
     "that can be read.",
     36: "A seed of 2^63, or a negative one: 4.",
+    37: "A command is killed between two commits, or within one (`tests/states/kinds.py` lists "
+    "what that leaves): every command that reads does so or says in one line why not; `affcli db "
+    "check` names what is unfinished; the same command goes on.",
+    39: "Something is to be resumed where nothing was interrupted: refused, and no file is made.",
+    43: "The clock goes back, or stands in another century: results are the same, and the order in "
+    "which things were begun decides which is the latest.",
+    44: "Killed commands leave files half written: the next command that writes the same one "
+    "removes those that are an hour old.",
+    45: "A signal in the first moment, before affcli listens to any: it ends silently, 130 or 143.",
 }
 """What happens, and what must follow, by number."""

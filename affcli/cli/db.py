@@ -46,21 +46,25 @@ def check(*, database: Database = DEFAULT_DATABASE, as_json: AsJson = False) -> 
     """Check that everything in the database is as it must be.
 
     That is pages, references, sums, and the counters beside the steps that changed them. Exit code
-    3 when something is not.
+    3 when something is not. What was interrupted, or is still going on, is named.
     """
     findings = store.check(database)
     wrong = [finding for finding in findings if finding.wrong]
     if as_json:
         show_json([asdict(finding) for finding in findings])
     else:
-        rows = [
-            (one.what, f"{one.wrong} times not" if one.wrong else "yes", one_line(one.example))
-            for one in findings
-        ]
+        rows = [(one.what, _in_words(one), one_line(one.example)) for one in findings]
         show_rows(("what must hold", "does", "for example"), rows, left=("what must hold",))
     if wrong:
         say(f"{one_line(database, 1000)}: not as it must be; restore a copy of the file")
     return DatabaseError.exit_code if wrong else 0
+
+
+def _in_words(finding: "store.Finding") -> str:
+    """Say whether something holds."""
+    if finding.wrong:
+        return f"{finding.wrong} times not"
+    return f"{finding.unfinished} not yet" if finding.unfinished else "yes"
 
 
 def info(*, database: Database = DEFAULT_DATABASE, as_json: AsJson = False) -> None:

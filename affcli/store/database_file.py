@@ -8,6 +8,7 @@ import sqlite3
 import stat
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
+from glob import escape
 from pathlib import Path
 
 from affcli.errors import DatabaseError, one_line
@@ -200,7 +201,15 @@ def require_current(revision: str, path: Path) -> None:
     stands = f"{one_line(path)}: its schema is at revision {one_line(revision)}"
     if is_older(revision):
         raise DatabaseError(f"{stands}, this affcli needs {REVISION}: run `affcli db upgrade`")
-    raise DatabaseError(f"{stands}, this affcli knows {REVISION}: install a newer affcli")
+    newer = f"install a newer affcli{or_its_copy(path)}"
+    raise DatabaseError(f"{stands}, this affcli knows {REVISION}: {newer}")
+
+
+def or_its_copy(path: Path) -> str:
+    """Name the copy that the latest upgrade of a database made, where there is one, as a remedy."""
+    copies = path.parent.glob(f"{escape(path.name)}.{'[0-9]' * len(REVISION)}*.backup")
+    latest = max(copies, key=lambda copy: copy.stat().st_mtime, default=None)
+    return "" if latest is None else f", or go on with {one_line(latest)}, from before the upgrade"
 
 
 def is_older(revision: str) -> bool:

@@ -23,12 +23,16 @@ class Finding:
     Args:
         what: in words.
         wrong: how often it does not hold; 0 when all is well.
-        example: one place where it does not hold, empty when all is well.
+        example: one place where it does not hold, empty when all is well; of what is unfinished
+            all places.
+        unfinished: how many have not come to their end, which is nothing wrong: they were
+            interrupted, or are still going on.
     """
 
     what: str
     wrong: int
     example: str
+    unfinished: int = 0
 
 
 CHECKS = {
@@ -68,6 +72,18 @@ CHECKS = {
 }
 """Each a query for the places where it does not hold."""
 
+UNFINISHED = {
+    "every learning run is finished": """
+        SELECT 'run ' || id FROM learning_run WHERE status <> 'done'""",
+    "every session is finished": """
+        SELECT 'session ' || id || ' (' || kind || ')' FROM session WHERE status <> 'done'""",
+    "every trial is finished": "SELECT 'trial ' || id FROM trial WHERE outcome IS NULL",
+    "every verification is finished": """
+        SELECT 'verification ' || id FROM verification WHERE verdict IS NULL""",
+}
+"""Each a query for what a kill can leave. Trials and verifications are saved whole; older versions
+saved them step by step."""
+
 
 def check(path: Path, *, timeout: float = LONGEST_WAIT) -> tuple[Finding, ...]:
     """Look at the whole of a database; nothing is changed.
@@ -82,16 +98,19 @@ def check(path: Path, *, timeout: float = LONGEST_WAIT) -> tuple[Finding, ...]:
             pages = [row[0] for row in driver.execute("PRAGMA integrity_check") if row[0] != "ok"]
             lost = driver.execute("PRAGMA foreign_key_check").fetchall()
             found = [
-                Finding("every page is sound", len(pages), *map(str, pages[:1] or [""])),
+                Finding("every page is sound", len(pages), str(pages[0]) if pages else ""),
                 Finding(
                     "every reference leads somewhere",
                     len(lost),
                     f"{lost[0][0]}, to {lost[0][2]}" if lost else "",
                 ),
             ]
-            for what, query in CHECKS.items():
+            for what, query in (CHECKS | UNFINISHED).items():
                 places = [str(row[0]) for row in driver.execute(query)]
-                found.append(Finding(what, len(places), places[0] if places else ""))
+                if what in UNFINISHED:
+                    found.append(Finding(what, 0, ", ".join(places), len(places)))
+                else:
+                    found.append(Finding(what, len(places), places[0] if places else ""))
     return tuple(found)
 
 

@@ -5,6 +5,7 @@ import secrets
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from glob import escape
 from pathlib import Path
 
 ENDING = ".affcli-part"
@@ -29,7 +30,7 @@ def replacing(path: Path, mode: int | None = None) -> Iterator[Path]:
     """
     target = Path(os.path.realpath(path))
     start = f".{target.name[:40]}."
-    for left in target.parent.glob(f"{_literally(start)}*{ENDING}*"):
+    for left in target.parent.glob(f"{escape(start)}*{ENDING}*"):
         with suppress(OSError):  # another process was faster, or it is not ours
             if time.time() - left.stat().st_mtime > OLD:
                 left.unlink()
@@ -44,8 +45,3 @@ def replacing(path: Path, mode: int | None = None) -> Iterator[Path]:
         part.replace(target)
     finally:
         part.unlink(missing_ok=True)
-
-
-def _literally(name: str) -> str:
-    """Return a pattern of `glob` that is this name alone."""
-    return "".join(f"[{c}]" if c in "*?[" else c for c in name)

@@ -199,10 +199,6 @@ def upgrade() -> None:
     op.execute(f"CREATE VIEW affordance_wide AS {AFFORDANCE_WIDE}")
 
 
-def downgrade() -> None:
-    raise NotImplementedError("0001 is the first schema; delete the file instead")
-
-
 def _table(name: str, columns: str, *options: str) -> None:
     """Create a table, strict where SQLite can."""
     ending = ", ".join([*options, *(["STRICT"] if STRICT else [])])

@@ -13,7 +13,3 @@ def upgrade() -> None:
     # All trials before this revision were seen through the noisy sensor.
     op.execute("ALTER TABLE trial ADD COLUMN sensor TEXT NOT NULL DEFAULT 'noisy'")
     op.execute("ALTER TABLE trial ADD COLUMN calibration TEXT")
-
-
-def downgrade() -> None:
-    raise NotImplementedError("a camera's calibration would be lost; keep a copy of the file")

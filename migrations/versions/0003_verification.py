@@ -73,7 +73,3 @@ def upgrade() -> None:
     strict = ["STRICT"] if STRICT else []
     op.execute(f"CREATE TABLE verification ({VERIFICATION}) {', '.join(strict)}")
     op.execute(f"CREATE TABLE replication ({REPLICATION}) {', '.join(['WITHOUT ROWID', *strict])}")
-
-
-def downgrade() -> None:
-    raise NotImplementedError("counters would lose what changed them; keep a copy of the file")

@@ -249,10 +249,6 @@ def upgrade() -> None:
         driver.create_function(function.__name__, arguments, None)
 
 
-def downgrade() -> None:
-    raise NotImplementedError("parts by value would be lost; keep a copy of the file")
-
-
 def _require_settings(driver: sqlite3.Connection) -> None:
     """Make sure that all settings can be read: SQL would not say whose cannot."""
     for table in ("learning_run", "session"):

@@ -3,6 +3,7 @@
 import os
 import signal
 import subprocess
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -15,12 +16,14 @@ import pytest
 from affcli.core.identity import Component
 from affcli.store import open_store
 from tests.cli.program import (
+    ROOT,
     Ended,
     affcli,
     contents,
     done,
     ending,
     one_printable_line,
+    refused,
     rows,
     started,
     wait_until,
@@ -145,6 +148,7 @@ def begun(database: Path) -> int:
 
 
 @pytest.mark.fault(2)
+@pytest.mark.fault(39)
 def test_resume_with_nothing_to_resume_starts_fresh(tmp_path: Path, leisurely: Path) -> None:
     database, again = tmp_path / "my.db", tmp_path / "again.db"
     learn = ("learn", "--tool", "stick", "--behaviors", "30")
@@ -157,6 +161,19 @@ def test_resume_with_nothing_to_resume_starts_fresh(tmp_path: Path, leisurely: P
     assert (ended.code, "its own hours, seed and settings" in ended.err) == (2, True)
     missing = tmp_path / "missing.db"
     assert affcli("learn", "--resume", "--db", missing).code == 3
+    assert not missing.exists()
+
+
+@pytest.mark.fault(39)
+def test_a_reproduction_is_resumed_only_where_one_was_interrupted(reproduced: Path) -> None:
+    """By --resume alone; with a number of robots or a seed it is the command itself."""
+    before = contents(reproduced)
+    line = refused(2, "reproduce", "--resume", "--db", reproduced)
+    assert "nothing to resume in" in line
+    assert line.endswith("begin one: affcli reproduce --robots 20")
+    assert contents(reproduced) == before
+    missing = reproduced.with_name("missing.db")
+    assert "no database there" in refused(3, "reproduce", "--resume", "--db", missing)
     assert not missing.exists()
 
 
@@ -173,8 +190,38 @@ def test_stopped_while_it_starts_it_is_one_line_too(
             assert stopped(process, signum) == Ended(code, "", GOES_ON)
 
 
+IMPORTING = """
+import importlib.abc, os, runpy, signal, sys
+
+class Interrupted(importlib.abc.MetaPathFinder):
+    def find_spec(self, name, path, target=None):
+        if name == sys.argv[1]:
+            os.kill(os.getpid(), int(sys.argv[2]))
+
+sys.meta_path.insert(0, Interrupted())
+runpy.run_module("affcli", run_name="__main__")
+"""
+"""The program, sent a signal when it imports a module."""
+
+
+@pytest.mark.fault(45)
+@pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("module", ["affcli.cli.main", "affcli.cli.signals", "affcli.cli.terminal"])
+def test_stopped_before_affcli_listens_it_is_silent(module: str, signum: signal.Signals) -> None:
+    """As a shell sees it that is 130 or 143."""
+    ended = subprocess.run(
+        [sys.executable, "-c", IMPORTING, module, str(int(signum))],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (ended.returncode, ended.stdout, ended.stderr) == (-signum, "", "")
+
+
 @pytest.mark.torture
 @pytest.mark.fault(3)
+@pytest.mark.fault(45)
 def test_a_signal_is_heard_whenever_it_comes(
     torture: bool, tell: Callable[[str], None], tmp_path: Path
 ) -> None:

@@ -2,11 +2,12 @@
 
 import subprocess
 import sys
+from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
 
-from tests.cli.program import ROOT, Ended, environment, names_in, refused
+from tests.cli.program import ROOT, Ended, contents, done, environment, names_in, refused
 
 NOWHERE = """
 import sys, tempfile
@@ -71,3 +72,30 @@ def test_too_little_memory_is_one_line(
     assert "memory ran out; what was saved is kept; ask for less" in refused(
         4, "db", "info", "--db", empty
     )
+
+
+USED = (
+    *("learn --tool t-hook --behaviors 40 --set trial.max_steps=3", "solve --goal 2"),
+    *("verify --update --rows 3", "report", "report --html new.html --force", "replay --all"),
+    *("figure results --out new.svg --force", "db backup --force", "db check", "cite"),
+)
+
+
+@pytest.mark.fault(43)
+@pytest.mark.parametrize("years", [(1901,), (2600,), (9999, 2001, 1969)])
+def test_the_clock_decides_nothing(
+    years: tuple[int, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It stands in another century, or goes back between two commands."""
+    for line in USED:
+        done(*line.split(), "--db", "usual.db", cwd=tmp_path)
+
+    class Clock(datetime):
+        @classmethod
+        def now(cls, tz: object = None) -> "Clock":
+            return cls(years[number % len(years)], 1, 2, tzinfo=UTC)
+
+    monkeypatch.setattr("affcli.cli.terminal.datetime", Clock)
+    for number, line in enumerate(USED):  # noqa: B007 the clock asks for it
+        done(*line.split(), "--db", "other.db", cwd=tmp_path)
+    assert contents(tmp_path / "other.db") == contents(tmp_path / "usual.db")

@@ -306,6 +306,7 @@ def test_a_value_that_affcli_did_not_write_is_named(params: str, store: Store) -
         store.learning.table(run.id)
 
 
+@pytest.mark.fault(43)
 def test_the_latest_run_is_the_one_begun_last_whatever_the_clock_says(store: Store) -> None:
     earlier = store.learning.begin(learning_spec(seed=1, behaviors=3), VERSIONS, LATER)
     later = learned(store, 3)

@@ -1,21 +1,25 @@
 """Upgrades that are killed, that run at once, or that fail."""
 
 import hashlib
+import os
 import shutil
 import signal
 import sqlite3
+import subprocess
+import sys
 from contextlib import ExitStack, closing
 from pathlib import Path
 
 import pytest
 
 from affcli.errors import DatabaseError
-from affcli.store import check, database_info, upgrade
+from affcli.store import backup, check, database_info, open_store, upgrade
 from affcli.store.database_file import REVISION
-from tests.store.processes import child, finished
+from tests.store.processes import ROOT, child, finished
 
 DATABASES = Path(__file__).parent / "databases"
 """A database of every past revision, made by the affcli of its time."""
+PAST = [f"{number:04}" for number in range(1, int(REVISION))]
 
 
 def old_database(revision: str, tmp_path: Path) -> Path:
@@ -78,6 +82,59 @@ def test_eight_upgrades_at_once_are_one_and_its_copy_is_of_the_old(tmp_path: Pat
     assert database_info(path).revision == REVISION
     assert [finding for finding in check(path) if finding.wrong] == []
     assert sorted(file.name for file in tmp_path.iterdir()) == ["old.db", "old.db.0001.backup"]
+
+
+@pytest.mark.fault(12)
+@pytest.mark.parametrize("revision", PAST)
+def test_an_older_affcli_names_the_copy_from_before_the_upgrade(
+    revision: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of several the latest; with it the older one goes on."""
+    path = old_database(revision, tmp_path)
+    old = everything(path)
+    path.with_name(f"old.db.{revision}.backup").write_text("of an upgrade before")
+    os.utime(path.with_name(f"old.db.{revision}.backup"), (0, 0))
+    backup(path, path.with_name("old.db.backup"))
+    told: list[Path] = []
+    upgrade(path, copied=told.append)
+    upgraded = path.read_bytes()
+    for module in ("database_file", "opening", "health"):
+        monkeypatch.setattr(f"affcli.store.{module}.REVISION", revision)
+    for write in (False, True):
+        with (
+            pytest.raises(DatabaseError) as caught,
+            open_store(path, create=write, write=write),
+        ):
+            pass
+        assert caught.value.exit_code == 3
+        assert str(caught.value) == (
+            f"{path}: its schema is at revision {REVISION}, this affcli knows {revision}: install "
+            f"a newer affcli, or go on with {told[0]}, from before the upgrade"
+        )
+    assert path.read_bytes() == upgraded
+    assert everything(told[0]) == old
+
+
+@pytest.mark.fault(12)
+@pytest.mark.parametrize("revision", [*PAST, "base", "-1"])
+def test_a_downgrade_is_refused_and_nothing_is_changed(revision: str, tmp_path: Path) -> None:
+    """As whoever knows Alembic would ask for it."""
+    path = old_database("0003", tmp_path)
+    upgrade(path)
+    before = path.read_bytes()
+    ended = subprocess.run(
+        [sys.executable, "-m", "alembic", "downgrade", revision],
+        cwd=ROOT,
+        env=os.environ | {"AFFCLI_DB": str(path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (ended.returncode, ended.stdout) == (3, "")
+    (line,) = ended.stderr.splitlines()
+    assert line.startswith("affcli: nothing was changed: ")
+    assert "FILE.REVISION.backup" in line
+    assert path.read_bytes() == before
 
 
 @pytest.mark.fault(10)

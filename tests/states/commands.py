@@ -1,0 +1,155 @@
+"""Every command of the program by what it does to a database, found in the program itself.
+
+What writes is registered here, and nowhere else; whatever else is asked a database reads it, and
+is called as its options say. So a new command is read with on every state by its being there, and
+one that writes is told to be registered.
+"""
+
+import shlex
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from affcli.cli.app import program
+from tests.cli.program import rows
+
+DATABASE = "my.db"
+"""The database of every command here, in a folder of its own."""
+SETTINGS = "[motion]\nhold = 60.0\n[trial]\nmax_steps = 4\n"
+"""An hour holds some thirty behaviors, and trials are given up soon."""
+CHUNK = 20
+"""Behaviors saved at once, so that a short run is saved in several chunks."""
+
+
+@dataclass(frozen=True, slots=True)
+class Writing:
+    """A command that writes, in a folder made ready for it.
+
+    Args:
+        line: the command, without its database.
+        before: commands that run first.
+        revision: of the database that is there; none if empty.
+        anew: done again it does not go on where it was but begins anew, from what is saved.
+    """
+
+    line: str
+    before: tuple[str, ...] = ()
+    revision: str = ""
+    anew: bool = False
+
+    @property
+    def args(self) -> list[str]:
+        """The words of the command."""
+        return called(self.line)
+
+
+LEARN = "learn --tool stick --tool t-hook --behaviors 60 --config settings.toml"
+USED = (LEARN, "solve --goal 2 --start 1 --tool t-hook")
+
+WRITING = {
+    "learn": Writing(LEARN),
+    "learn, through a camera": Writing("learn --tool stick --behaviors 4 --sensor camera"),
+    "solve": Writing("solve --goal 3", (LEARN,), anew=True),
+    "break-tool": Writing("break-tool", (LEARN,), anew=True),
+    "verify --update": Writing("verify --update --rows 4", (LEARN,), anew=True),
+    "reproduce": Writing("reproduce --robots 2 --workers 1 --config settings.toml"),
+    "db upgrade": Writing("db upgrade", revision="0003"),
+    "db upgrade, from the first": Writing("db upgrade", revision="0001"),
+    "db backup": Writing("db backup --force", (LEARN,)),
+    "table export --out": Writing("table export --force --out out.csv", (LEARN,)),
+    "report --html": Writing("report --force --html out.html", USED),
+}
+"""What writes: a database, a copy of one, or another file; by the words that call it."""
+
+PLACES = {"--out", "--html", "--gif", "--video"}
+"""Options that name a file to be written."""
+ENDINGS = {"figure": "svg", "camera": "png", "table": "csv", "--html": "html", "--gif": "gif"}
+ENDINGS |= {"--video": "avi", "camera calibrate": "json"}
+USUAL = {"predict": "--pushes 2", "verify": "--rows 2", "figure prediction": "--pushes 2"}
+USUAL |= {f"camera view {one}": "--step 1 --out out.png" for one in ("--run", "--trial")}
+USUAL |= {"camera view --video": "--trial {trial} --step 1"}
+USUAL |= {"camera view --after": "--trial {trial} --step 1 --out out.png"}
+USUAL |= {f"replay {one}": "{trial} --speed 20" for one in ("--gif", "--json")}
+"""Given beside what is asked for, so that it ends soon or can be done at all."""
+NOT_ASKED = {"--force", "--update", "--frame", "--pattern", "--help"}
+"""Flags that are given always, that write, or that leave out the database."""
+LATEST = {"--session": "session", "--trial": "trial", "--after-trial": "trial", "TRIAL": "trial"}
+LATEST |= {"--run": "learning_run", "--compare": "learning_run", "ID": "affordance"}
+"""Which number is meant, of an option or, without one, by the word that stands for it."""
+
+
+def called(line: str) -> list[str]:
+    """Return the words of a command line, with its database."""
+    return [*shlex.split(line), "--db", DATABASE]
+
+
+def commands(group: Any = program, path: tuple[str, ...] = ()) -> Iterator[tuple[str, list[Any]]]:
+    """Yield every command that is asked a database: its name and its parameters."""
+    for name, command in group.commands.items():
+        if hasattr(command, "commands"):
+            yield from commands(command, (*path, name))
+        else:
+            params = command.loaded().params
+            if any("--db" in one.opts for one in params):
+                yield " ".join((*path, name)), params
+
+
+def reading() -> Iterator[str]:
+    """Yield calls of every command that reads a database, with ``{table}`` for a number.
+
+    Each is called with what it needs; then with each thing more that it may be asked: a number, a
+    flag, a file to write.
+    """
+    for name, params in commands():
+        if name in WRITING:
+            continue
+        flags = {one.opts[0] for one in params if getattr(one, "is_flag", False)}
+        always = [name, *(["--force"] if "--force" in flags else [])]
+        needed = [_given(one, name) for one in params if one.required]
+        yield " ".join((*always, *needed, USUAL.get(name, "")))
+        for one in params:
+            asked = _asked(one, name)
+            if asked and not one.required:
+                more = USUAL.get(f"{name} {one.opts[0]}", USUAL.get(name, ""))
+                yield " ".join((*always, *needed, asked, more))
+
+
+def _asked(one: Any, name: str) -> str:
+    """Return an option or argument as it is asked for; empty if it says nothing of the database."""
+    option = one.opts[0]
+    if getattr(one, "is_flag", False):
+        return "" if option in NOT_ASKED else str(option)
+    if one.metavar in {"ID", "TRIAL"} or option in PLACES:
+        return _given(one, name)
+    return ""
+
+
+def _given(one: Any, name: str) -> str:
+    """Return an option or argument with its value."""
+    option = one.opts[0] if one.param_type_name == "option" else ""
+    if option in PLACES:
+        ending = ENDINGS.get(option) or ENDINGS.get(name) or ENDINGS[name.split(maxsplit=1)[0]]
+        return f"{option} out.{ending}"
+    if one.metavar == "QUERY":
+        return "'select * from affordance_table'"
+    table = "trial" if name == "figure trial" else LATEST.get(option) or LATEST[one.metavar]
+    return f"{option} {{{table}}}"
+
+
+@dataclass(slots=True)
+class Numbers:
+    """The latest number of each table of a database; 1 where there is none."""
+
+    database: Path
+    known: dict[str, int] = field(default_factory=dict)
+
+    def __getitem__(self, table: str) -> int:
+        """Return the number; called by `str.format_map`."""
+        if table not in self.known:
+            number = None
+            with suppress(Exception):  # no such file or table: then it is for the command to say
+                ((number,),) = rows(self.database, f"SELECT max(id) FROM {table}")
+            self.known[table] = number or 1
+        return self.known[table]
