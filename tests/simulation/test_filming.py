@@ -7,7 +7,7 @@ import pytest
 
 from affcli.behaviors.moving import CONTRACT_ARM, EXTEND_ARM, SLIDE_ARM_LEFT, SLIDE_ARM_RIGHT
 from affcli.behaviors.positioning import position_wrist
-from affcli.core.behavior import BehaviorCall
+from affcli.core.behavior import BehaviorCall, BehaviorName
 from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Observation
 from affcli.core.scene import Scene
@@ -75,7 +75,7 @@ def test_the_tool_is_lifted_carried_and_lowered(target: Pose) -> None:
         (SLIDE_ARM_RIGHT, Point(1.0, 0.0)),
     ],
 )
-def test_a_slide_is_shown_with_what_it_pushes(name: str, direction: Point) -> None:
+def test_a_slide_is_shown_with_what_it_pushes(name: BehaviorName, direction: Point) -> None:
     """The wrist goes straight there; the attractor begins and ends where it truly does."""
     setting = setting_at(FROM, Pose(5.0, 26.5))
     before, call = setting.table.attractor, BehaviorCall.of(name, {"offset_distance": 5.0})
