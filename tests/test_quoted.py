@@ -75,6 +75,7 @@ def test_the_rules_of_the_paper_have_its_numbers() -> None:
     assert nested_query.TOP_SHARE == 0.2
     planner = registry.planner(registry.component("planners", registry.DEFAULTS["planner"]))
     assert (planner.angle_degrees, planner.threshold) == (40.0, 0.5)
+    assert planner == nested_query.NestedQuery()
 
 
 def test_the_choices_where_the_paper_is_silent_have_theirs() -> None:
