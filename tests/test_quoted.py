@@ -9,13 +9,15 @@ from itertools import product
 import pytest
 
 from affcli import registry
-from affcli.config import DEFAULTS, Settings
+from affcli.config import DEFAULTS, Settings, known_settings
 from affcli.core import affordance, affordance_table, change_detection, verification
 from affcli.core.geometry import Point
+from affcli.core.setting import LARGEST, SMALLEST
 from affcli.planning import nested_query, prediction
 from affcli.simulation.table_world import TableWorld
 from affcli.simulation.worlds import TABLE_VERSION
 
+MOVING = ("extend-arm", "contract-arm", "slide-arm-left", "slide-arm-right")
 SETTINGS = {
     "arm.elbow_max_degrees": 146.0,
     "arm.flange_height": 1.05,
@@ -73,6 +75,7 @@ def test_the_rules_of_the_paper_have_its_numbers() -> None:
     assert nested_query.TOP_SHARE == 0.2
     planner = registry.planner(registry.component("planners", registry.DEFAULTS["planner"]))
     assert (planner.angle_degrees, planner.threshold) == (40.0, 0.5)
+    assert planner == nested_query.NestedQuery()
 
 
 def test_the_choices_where_the_paper_is_silent_have_theirs() -> None:
@@ -91,3 +94,47 @@ def test_goals_and_starts_lie_where_results_were_published_with() -> None:
         assert task.goal.center == goals[task.goal.name]
         assert task.goal.half_width == 2.25
         assert task.start == Point(starts[task.start_name], 22.4)
+
+
+LIMITS = {
+    "arm.elbow_max_degrees": (SMALLEST, 180.0),
+    "arm.flange_height": (0.0, LARGEST),
+    "arm.shoulder_min_degrees": (-LARGEST, LARGEST),
+    "arm.waist_max_degrees": (SMALLEST, 90.0),
+    "camera.blur_px": (0.0, 20.0),
+    "camera.distortion_per_mm2": (-0.05, 0.05),
+    "camera.focal_length_mm": (SMALLEST, 100.0),
+    "camera.grey_noise": (0.0, 255.0),
+    "camera.height": (SMALLEST, 1000.0),
+    "camera.tilt_degrees": (0.0, 89.0),
+    "camera.turn_degrees": (0.0, 360.0),
+    "camera.uneven_light": (0.0, 0.9),
+    "camera.x": (-LARGEST, LARGEST),
+    "camera.y": (-LARGEST, LARGEST),
+    "friction.tool_puck": (0.0, LARGEST),
+    "motion.grasp_time": (0.0, LARGEST),
+    "motion.hold": (0.0, LARGEST),
+    "motion.regrasp_time": (0.0, LARGEST),
+    "physics.collision_slop": (1e-9, LARGEST),
+    "physics.overlap_mended": (1e-6, 1.0),
+    "sensor.color_noise": (0.0, 255.0),
+    "sensor.position_noise": (0.0, 10.0),
+    "tools.handle_below_grasp": (0.0, LARGEST),
+    "bindings: grasp: angle": (-180.0, 180.0),
+    "bindings: grasp: grasp_point": (0.0, 100.0),
+    **{f"behaviors: {name}: offset_distance": (0.1, 20.0) for name in MOVING},
+    "planners: nested-query: angle_degrees": (1.0, 180.0),
+    "planners: nested-query: share": (0.001, 1.0),
+    "planners: nested-query: threshold": (0.0, 0.999),
+}
+"""Of what may be less, or not as much, as any length, speed, time or count."""
+
+
+def test_a_value_may_be_what_it_could_be_before_and_no_more() -> None:
+    """A limit that moves refuses old files, or lets through what the engine cannot bear."""
+    parts = [part for kind in registry.KINDS for part in registry.parts(kind).values()]
+    params = {f"{p.kind}: {p.name}: {name}": one for p in parts for name, one in p.params.items()}
+    for name, one in (known_settings() | params).items():
+        if not one.choices:
+            least = 1 if isinstance(one.default, int) else SMALLEST
+            assert (one.low, one.high) == LIMITS.get(name, (least, LARGEST)), name

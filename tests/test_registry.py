@@ -49,6 +49,7 @@ def test_a_part_says_what_it_is_and_where_it_comes_from(part: Part) -> None:
     for text in (part.summary, part.source):
         assert text.strip() == text != ""
         assert text.isprintable()
+    assert part.source == "affcli" or part.source.startswith("Stoytchev 2008, §")
     assert part.version >= 1
 
 

@@ -27,11 +27,6 @@ class AffordanceTable:
     Attributes:
         movement_x, movement_y, movement_z: expected movement of each row (n,), in, table frame.
         offset_x, offset_y: attractor as seen from the wrist at the start of each row (n,), in.
-        travel_x, travel_y: how far the wrist went in each row (n,), in, table frame.
-        wrist_angle: the wrist's angle at the start of each row (n,), rad.
-        truncated: whether each row met the edge of the reach (n,).
-        binding: which of `bindings` each row was made with (n,).
-        bindings: the distinct binding behaviors of the rows, in order of age.
         times_used, times_successful: the counters (n,), int64.
         probable: whether the replication probability is greater than 1/2 (n,), kept up to date.
     """
@@ -42,13 +37,6 @@ class AffordanceTable:
         offsets = np.array([row.start.wrist_to_object for row in self._rows]).reshape(-1, 2)
         self.movement_x, self.movement_y, self.movement_z = np.ascontiguousarray(movements.T)
         self.offset_x, self.offset_y = np.ascontiguousarray(offsets.T)
-        self.travel_x = np.array([row.travel.x for row in self._rows], dtype=float)
-        self.travel_y = np.array([row.travel.y for row in self._rows], dtype=float)
-        self.wrist_angle = np.array([row.wrist_angle for row in self._rows], dtype=float)
-        self.truncated = np.array([row.truncated for row in self._rows], dtype=bool)
-        self.bindings = tuple(dict.fromkeys(row.binding for row in self._rows))
-        numbered = {binding: number for number, binding in enumerate(self.bindings)}
-        self.binding = np.array([numbered[row.binding] for row in self._rows], dtype=np.intp)
         self.times_used = np.array([row.times_used for row in self._rows], dtype=np.int64)
         self.times_successful = np.array(
             [row.times_successful for row in self._rows], dtype=np.int64

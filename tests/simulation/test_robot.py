@@ -16,6 +16,7 @@ from affcli.behaviors.moving import (
     SLIDE_ARM_RIGHT,
 )
 from affcli.behaviors.moving import moving as moving_behavior
+from affcli.config import settings_with
 from affcli.core.behavior import (
     GRASP,
     POSITION_WRIST,
@@ -261,24 +262,27 @@ def test_where_no_joint_angles_lead_the_arm_does_not_go(radius: float) -> None:
 
 
 @settings(deadline=None)
-@given(st.lists(st.tuples(st.floats(-25, 25), st.floats(-25, 25)), min_size=1, max_size=20))
+@given(
+    st.lists(st.tuples(st.floats(-25, 25), st.floats(-25, 25)), min_size=1, max_size=20),
+    st.sampled_from([90.0, 60.0, 20.0]),
+)
 def test_the_arm_reaches_where_joint_angles_hold_the_tool_both_lifted_and_on_the_table(
-    points: list[tuple[float, float]],
+    points: list[tuple[float, float]], waist: float
 ) -> None:
     """§5: "keeping the wrist perpendicular to the table": so says the inverse kinematics."""
-    robot = setting_at(Point(0.0, 12.0)).robot
+    changed = settings_with({"arm": {"waist_max_degrees": waist}}, "a test")
+    arm, robot = changed.workspace.arm, setting_with("t-hook", settings=changed).robot
     x, y = np.array(points).T
     expected = [
         all(
-            joint_angles(ARM, Point(*point), height) is not None
-            for height in (ARM.flange_height, ARM.flange_height + ARM.lift_height)
+            joint_angles(arm, Point(*point), height) is not None
+            for height in (arm.flange_height, arm.flange_height + arm.lift_height)
         )
         for point in points
     ]
-    sure = [
-        min(abs(math.hypot(*p) - INNER), abs(math.hypot(*p) - OUTER), abs(p[1])) > 1e-6
-        for p in points
-    ]
+    edges = [(abs(math.hypot(*p) - r) for r in (INNER, OUTER)) for p in points]
+    turned = [abs(abs(math.atan2(p[0], p[1])) - math.radians(waist)) for p in points]
+    sure = [min(*edge, turn) > 1e-6 for edge, turn in zip(edges, turned, strict=True)]
     for said, true, certain in zip(robot.reaches(x, y), expected, sure, strict=True):
         assert not certain or bool(said) is true
 

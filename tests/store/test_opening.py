@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+import affcli.store
 from affcli.errors import DatabaseError
 from affcli.store import check, database_info, open_store, run_sql, upgrade
 from affcli.store.database_file import REVISION
@@ -276,3 +277,9 @@ def test_every_way_in_waits_for_a_lock(way: Way, database: Path) -> None:
     way(database)
     giving_back.join()
     other.close()
+
+
+@pytest.mark.parametrize("name", affcli.store.__all__)
+def test_the_room_has_each_name_that_it_promises(name: str) -> None:
+    """They are imported when they are first asked for."""
+    assert getattr(affcli.store, name) is not None
