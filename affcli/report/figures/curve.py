@@ -19,9 +19,7 @@ LOGARITHMIC = 8.0
 """A swept setting whose largest value is so many times its smallest has a logarithmic axis."""
 
 
-def curve_figure(
-    lines: Sequence[Line], x: str, y: str, width: float | None = None
-) -> Figure:
+def curve_figure(lines: Sequence[Line], x: str, y: str, width: float | None = None) -> Figure:
     """Draw lines, each with the 95 % interval of the mean: a panel for each measure.
 
     Args:
