@@ -138,6 +138,12 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
             "Reproduce the paper with many robots: five tools, 80 + 16 trials each.",
             goes_on=True,
         ),
+        Command(
+            "experiment",
+            "experiment:experiment",
+            "Let many robots live under several conditions, as a file says.",
+            goes_on=True,
+        ),
     ),
     "Look": (
         Command(

@@ -6,9 +6,10 @@ import os
 import sys
 import time
 from collections import deque
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
+from threading import Event, Thread
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 from affcli.errors import AffcliError, one_line
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 NARROWEST = 20
 """A terminal of fewer columns is written to as if it had these."""
+A_MINUTE = 60.0
+"""Seconds between two lines that say how far something is, where there is no terminal."""
 
 
 def prepare_streams() -> None:
@@ -168,34 +171,107 @@ def shows_braille() -> bool:
 
 
 @contextmanager
-def progress(description: str, total: float) -> "Iterator[Callable[[float, str], object]]":
-    """Give a bar on stderr that is told how much is done, and a status, and leaves nothing behind.
+def progress(
+    description: str, total: float, noun: str = ""
+) -> "Iterator[Callable[[float, str], object]]":
+    """Give what is told how much is done, and a status, and shows it on stderr from the beginning.
 
-    Silent without a terminal.
+    To a terminal it is a bar that leaves nothing behind; otherwise, to a log file for one, a line a
+    minute. Both tell how long it has taken and how long it will.
+
+    Args:
+        description: of what is done.
+        total: how much there is to do.
+        noun: what is counted, where the count itself is the status.
     """
+    far = _Progress(total, noun)
     if not sys.stderr.isatty():
-        yield lambda _done, _status: None
+        with _said_each_minute(lambda: f"{description}: {far.words()}"):
+            yield far.update
         return
-    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, Progress, ProgressColumn, Task, TextColumn
+    from rich.text import Text
 
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(bar_width=10),
-        TextColumn("{task.fields[status]}"),
-        TimeRemainingColumn(),
-    )
+    class Words(ProgressColumn):
+        """How far it is; the time goes on while nothing else does."""
+
+        def render(self, task: Task) -> Text:
+            del task
+            return Text(far.words())
+
+    columns = (TextColumn("{task.description}"), BarColumn(bar_width=10), Words())
     with Progress(*columns, console=_console(sys.stderr), transient=True) as shown:
-        task = shown.add_task(description, total=total, status="")
-        yield lambda done, status: shown.update(task, completed=done, status=status)
+        task = shown.add_task(description, total=total)
+
+        def update(done: float, status: str = "") -> None:
+            far.update(done, status)
+            shown.update(task, completed=done)
+
+        yield update
+
+
+class _Progress:
+    """How far something is, in words."""
+
+    def __init__(self, total: float, noun: str) -> None:
+        self._total, self._noun, self._began = total, noun, time.monotonic()
+        self._first: float | None = None
+        self._done, self._status = 0.0, ""
+
+    def update(self, done: float, status: str = "") -> None:
+        """Take note of how much is done; what is done at first was done before."""
+        if self._first is None:
+            self._first = done
+        self._done, self._status = done, status
+
+    def words(self) -> str:
+        """Return how much is done, how fast, how long it took and how long it will take."""
+        took, new = time.monotonic() - self._began, self._done - (self._first or 0.0)
+        words = [self._status] if self._status else []
+        if self._noun:
+            words = [f"{self._done:g} of {self._total:g} {self._noun}"]
+        if self._noun and new > 0.0:
+            words.append(f"{60.0 * new / took:.3g} a minute")
+        words.append(_clock(took))
+        if new > 0.0:
+            words.append(f"{_clock(took * (self._total - self._done) / new)} left")
+        return ", ".join(words)
+
+
+def _clock(seconds: float) -> str:
+    """Return a time as ``3:07`` or ``1:02:03``."""
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"
+
+
+@contextmanager
+def _said_each_minute(words: "Callable[[], str]") -> "Iterator[None]":
+    """Say how far it is once a minute while the block runs, whatever the block waits for."""
+    over = Event()
+
+    def tell() -> None:
+        with suppress(AffcliError):  # nobody can read it: the block finds out when it has to say
+            while not over.wait(A_MINUTE):
+                say(words())
+
+    teller = Thread(target=tell, daemon=True)
+    teller.start()
+    try:
+        yield
+    finally:
+        over.set()
+        teller.join()
 
 
 def followed(items: "Iterable[T]", description: str, total: int, noun: str) -> "list[T]":
     """Return all of some items, while a bar counts them as they come."""
-    done = []
-    with progress(description, total) as bar:
+    done: list[T] = []
+    with progress(description, total, noun) as bar:
+        bar(0, "")
         for item in items:
             done.append(item)
-            bar(len(done), f"{len(done)} of {total} {noun}")
+            bar(len(done), "")
     return done
 
 

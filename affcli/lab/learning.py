@@ -15,7 +15,7 @@ CHUNK = 500
 """Behaviors saved in one transaction: what a kill can cost, and half a robot hour."""
 
 Progress = Callable[[LearningRunInfo], None]
-"""Called after every saved chunk with what the store now holds of the run."""
+"""Called at the beginning and after every saved chunk with what the store holds of the run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,7 @@ def learn(
         store: open for writing.
         spec: which run.
         now: gives the time as ISO text, for the record only.
-        progress: called after each saved chunk.
+        progress: called at the beginning and after each saved chunk.
 
     Raises:
         DatabaseError: a chunk could not be saved; the chunks before it are kept.
@@ -58,6 +58,8 @@ def learn(
 
     made_with = versions(world_of(spec, again=True), spec.sensor)
     info = store.learning.begin(spec, made_with, now())
+    if progress is not None:
+        progress(info)
     new = False
     while info.status != "done":
         run = gone_on_with(info)

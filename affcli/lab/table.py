@@ -9,7 +9,7 @@ from affcli.analysis.regions import region_at, region_of
 from affcli.core.geometry import Point
 from affcli.core.records import LearningRunInfo, StoredRow, StoredStep
 from affcli.core.row_filter import Column, Relation, RowFilter
-from affcli.core.specs import LearningSpec, TrialSpec
+from affcli.core.specs import LIVES, LearningSpec, TrialSpec
 from affcli.store import Store
 
 Made = TypeVar("Made")
@@ -22,8 +22,9 @@ REGION = Column("region", str)
 
 def every_run(store: Store) -> tuple[LearningRunInfo, ...]:
     """Return all learning runs, also those of reproductions and unfinished ones."""
-    robots = (store.learning.runs(session_id=s.id) for s in store.sessions.all("reproduce"))
-    return (*store.learning.runs(), *(run for runs in robots for run in runs))
+    robots = (store.learning.runs(session_id=s.id) for s in store.sessions.all(*LIVES))
+    # Conditions of an experiment share runs.
+    return (*store.learning.runs(), *{run.id: run for runs in robots for run in runs}.values())
 
 
 def history_of(store: Store, row_id: int) -> list[tuple[StoredStep, TrialSpec]]:

@@ -18,7 +18,7 @@ from affcli.store.lock_retry import ATTEMPT, retried
 APPLICATION_ID = int.from_bytes(b"affc", "big")
 """``PRAGMA application_id`` of affcli's databases."""
 
-REVISION = "0004"
+REVISION = "0006"
 """The revision of ``migrations/`` that this code reads and writes."""
 
 RELATIONS = frozenset({*COLUMNS, "affordance_table", "affordance_wide"})

@@ -17,7 +17,7 @@ from affcli.errors import DatabaseError, UsageError, one_line
 from affcli.store import reading, rows
 from affcli.store.comparing import by_number, differences
 from affcli.store.connection import Database, insert_many, insert_one, mappings, numbered
-from affcli.store.tables import affordance, behavior, learning_run, tool
+from affcli.store.tables import affordance, behavior, learning_run, tool, trial
 
 COUNTERS = frozenset({"times_used", "times_successful"})
 """Trials change them after a row is made."""
@@ -157,10 +157,11 @@ class Learning:
 
         Args:
             tool: only those of this tool.
-            session_id: those of this reproduction; None for those that stand for themselves.
+            session_id: those that the robots of this session used, also when another condition of
+                their experiment learned them; None for those that stand for themselves.
             status: only ``running`` or only ``done`` ones.
         """
-        wanted = selected_runs().where(learning_run.c.session_id.is_(session_id))
+        wanted = selected_runs().where(used_in(session_id))
         for column, value in (("tool", tool), ("status", status)):
             if value is not None:
                 wanted = wanted.where(learning_run.c[column] == value)
@@ -306,6 +307,15 @@ class Learning:
             *differences("behavior", kept, done),
             *(d for d in differences("affordance", kept_rows, made) if d.column not in COUNTERS),
         )
+
+
+def used_in(session_id: int | None) -> sa.ColumnElement[bool]:
+    """Tell whether a learning run was used by the robots of a session, or stands for itself."""
+    if session_id is None:
+        return learning_run.c.session_id.is_(None)
+    return learning_run.c.id.in_(
+        sa.select(trial.c.learning_run_id).where(trial.c.session_id == session_id)
+    )
 
 
 def insert_run(connection: sa.Connection, row: Mapping[str, Any], spec: LearningSpec) -> int:

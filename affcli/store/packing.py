@@ -38,22 +38,24 @@ class PackedTrial:
 
 @dataclass(frozen=True, slots=True)
 class PackedRun:
-    """One finished learning run as rows, with the trials of its tool.
+    """One finished learning run as rows, with the trials that start from its table.
 
     Args:
         spec: what the run is a function of.
+        calibration: of the robot's camera, as JSON; None without one.
         behaviors, affordances: rows without the run's id.
         resets, redraws, robot_seconds: of the whole run.
-        trials: those that start from its table.
+        trials: those that start from its table, by the condition that they are part of.
     """
 
     spec: LearningSpec
+    calibration: str | None
     behaviors: tuple[Row, ...]
     affordances: tuple[Row, ...]
     resets: int
     redraws: int
     robot_seconds: float
-    trials: tuple[PackedTrial, ...]
+    trials: dict[int, list[PackedTrial]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,32 +64,35 @@ class PackedRobot:
 
     Args:
         robot: its number.
-        runs: what it learned and how it was tested, by tool.
-        calibration: of its camera, as JSON; None without one.
+        runs: what it learned, and how it was tested with it.
     """
 
     robot: int
     runs: tuple[PackedRun, ...]
-    calibration: str | None
 
 
 def pack_robot(record: RobotRecord) -> PackedRobot:
     """Return the life of a robot as rows, ready to be sent to the process that saves it."""
     runs = []
-    for spec, steps, seconds in record.learned:
+    for number, (spec, steps, seconds) in enumerate(record.learned):
         rows = [r.affordance for r, _ in steps if r.affordance is not None]
+        trials: dict[int, list[PackedTrial]] = {}
+        for condition, run, trial in record.tested:
+            if run == number:
+                trials.setdefault(condition, []).append(pack_trial(trial))
         runs.append(
             PackedRun(
                 spec=spec,
+                calibration=record.calibrations[number],
                 behaviors=tuple(behavior_row(0, *step)[1:] for step in steps),
                 affordances=tuple(affordance_row(0, spec.tool, row)[1:] for row in rows),
                 resets=sum(r.resets for r, _ in steps),
                 redraws=sum(r.redraws for r, _ in steps),
                 robot_seconds=seconds,
-                trials=tuple(pack_trial(t) for t in record.trials if t.spec.tool == spec.tool),
+                trials=trials,
             )
         )
-    return PackedRobot(record.robot, tuple(runs), record.calibration)
+    return PackedRobot(record.robot, tuple(runs))
 
 
 def pack_trial(trial: TrialRecord) -> PackedTrial:

@@ -16,6 +16,7 @@ from affcli.core.results import (
 from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome, is_counted
 from affcli.store.connection import Database, tuples
+from affcli.store.learning import used_in
 from affcli.store.reading import behavior_call, reading_what_was_written
 from affcli.store.tables import affordance, behavior, learning_run, step, trial
 
@@ -111,13 +112,13 @@ class Results:
 
         Args:
             seconds: length of an interval.
-            session_id: the runs of this reproduction; None for those that are of none.
+            session_id: the runs that its robots used; None for those that stand for themselves.
         """
         b, run = behavior.c, learning_run.c
         number = sa.cast(b.clock / seconds, sa.Integer)
         wanted = (
             sa.select(b.learning_run_id, number, sa.func.count(), sa.func.sum(b.change_detected))
-            .where(b.learning_run_id.in_(sa.select(run.id).where(run.session_id.is_(session_id))))
+            .where(b.learning_run_id.in_(sa.select(run.id).where(used_in(session_id))))
             .group_by(b.learning_run_id, number)
             .order_by(b.learning_run_id, number)
         )

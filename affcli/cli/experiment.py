@@ -1,0 +1,106 @@
+"""``affcli experiment``: many robots under several conditions, as a TOML file says (§6, §7)."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from affcli import lab
+from affcli import store as stores
+from affcli.analysis.experiment import tallies
+from affcli.cli.database import opened
+from affcli.cli.options import (
+    DEFAULT_DATABASE,
+    AsJson,
+    Database,
+    Resume,
+    Workers,
+    checked_workers,
+)
+from affcli.cli.terminal import now, progress, say, show_either
+from affcli.core.records import ExperimentInfo
+from affcli.errors import UsageError, one_line
+from affcli.report.experiment import (
+    ConditionResult,
+    Cost,
+    cost_json,
+    cost_table,
+    experiment_json,
+    experiment_table,
+)
+
+
+def experiment(
+    *,
+    file: Annotated[
+        Path | None,
+        typer.Argument(
+            help="What is to be done: a TOML file.", metavar="FILE.toml", readable=False
+        ),
+    ] = None,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Say what it will take; do nothing.")
+    ] = False,
+    resume: Resume = False,
+    workers: Workers = None,
+    database: Database = DEFAULT_DATABASE,
+    as_json: AsJson = False,
+) -> None:
+    """Let many robots live under several conditions, as a file says.
+
+    Conditions are paired robot by robot: what they share is learned once. The result is the same
+    for any number of workers. An interrupted experiment goes on when the same command is given
+    again, as does the latest one with --resume alone.
+    """
+    count = checked_workers(workers)
+    if file is None and (dry_run or not resume):
+        raise UsageError("which experiment? give a TOML file, or --resume")
+    wanted = None if file is None else lab.definition.experiment_file(file)
+    if dry_run and wanted is not None:
+        _say_cost(wanted, count, as_json=as_json)
+        return
+    with opened(database, create=wanted is not None, write=True) as store:
+        what = wanted or _interrupted(store, database)
+        info = lab.experiment.begin(store, what, now)
+        with progress(one_line(what.name), what.robots, "robots") as bar:
+            for saved in lab.experiment.run(store, what, info, count, now, say):
+                bar(saved, "")
+        results = _results(store, info)
+    say(f"experiment {one_line(what.name)}: {what.robots} robots, saved in {database}")
+    said = (what.name, what.question, what.robots, results)
+    show_either(
+        as_json=as_json,
+        value=lambda: experiment_json(*said),
+        tables=lambda: [experiment_table(*said)],
+    )
+
+
+def _interrupted(store: "stores.Store", database: Path) -> "lab.experiment.Experiment":
+    """Return the experiment that was begun last and is not done."""
+    begun = [one for one in store.experiments.all() if one.status == "running"]
+    if not begun:
+        raise UsageError(f"nothing to resume in {database}; begin one: affcli experiment FILE.toml")
+    place = f"experiment {one_line(begun[-1].name)} in {database}"
+    return lab.definition.experiment_of(begun[-1].definition, place)
+
+
+def _say_cost(what: "lab.experiment.Experiment", workers: int, *, as_json: bool) -> None:
+    """Let one robot live, and say what all of them will take."""
+    with progress("one robot", 1.0):
+        found = lab.experiment.estimate(what, now)
+    counts = (found.robots, found.learning_runs, found.trials, found.robot_hours)
+    cost = Cost(*counts, found.seconds, found.bytes, workers)
+    names = [condition.name for condition in what.conditions]
+    show_either(
+        as_json=as_json,
+        value=lambda: cost_json(names, cost),
+        tables=lambda: [cost_table(what.name, names, cost)],
+    )
+
+
+def _results(store: "stores.Store", info: ExperimentInfo) -> list[ConditionResult]:
+    """Return what each condition gave."""
+    return [
+        ConditionResult(name, session, tallies(store.results.success_counts(session)))
+        for name, session in info.conditions
+    ]
