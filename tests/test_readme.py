@@ -90,6 +90,8 @@ def demo(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (folder / "noisy.toml").write_text(code)
     for code in blocks(EXPERIMENTS, "toml"):
         (folder / "share.toml").write_text(code)
+    for name in ("a.db", "b.db", "shard1.db", "shard2.db"):
+        shutil.copy(folder / "demo.db", folder / name)
     (folder / "experiments").symlink_to(ROOT / "experiments")
     cup = blocks(CAMERA, "toml")[0]
     assert "30, 110, 200" in cup

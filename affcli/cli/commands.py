@@ -45,10 +45,15 @@ CAMERA = Group(
 
 DB = Group(
     "db",
-    "Check, copy and upgrade the database file.",
+    "Check, copy, merge and upgrade the database file.",
     (
         Command("upgrade", "db:upgrade", "Bring the schema of an older database up to date."),
         Command("backup", "db:backup", "Write a checked copy of the database."),
+        Command(
+            "merge",
+            "db:merge",
+            "Bring robots of the same experiments together from several databases.",
+        ),
         Command("check", "db:check", "Check that everything in the database is as it must be."),
         Command(
             "info",

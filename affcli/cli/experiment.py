@@ -1,5 +1,7 @@
 """``affcli experiment``: many robots under several conditions, as a TOML file says (§6, §7)."""
 
+import re
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -19,7 +21,7 @@ from affcli.cli.options import (
 )
 from affcli.cli.terminal import now, progress, say, show_either
 from affcli.core.records import ExperimentInfo
-from affcli.errors import UsageError, one_line
+from affcli.errors import BadInputError, UsageError, one_line
 from affcli.report.experiment import (
     ConditionResult,
     Cost,
@@ -28,6 +30,27 @@ from affcli.report.experiment import (
     experiment_json,
     experiment_table,
 )
+
+
+@dataclass(frozen=True, slots=True)
+class Shard:
+    """One of several parts of the robots: every Nth, from the Kth on."""
+
+    part: int = 1
+    parts: int = 1
+
+    def of(self, robots: int) -> range:
+        """Return the numbers of its robots."""
+        return range(self.part - 1, robots, self.parts)
+
+
+def checked_shard(text: str) -> Shard:
+    """Return the part that ``K/N`` names; BadInputError when K does not lie in 1 to N."""
+    found = re.fullmatch(r"([0-9]{1,6})/([0-9]{1,6})", text)
+    part, parts = (int(found[1]), int(found[2])) if found else (0, 0)
+    if not 1 <= part <= parts:
+        raise BadInputError(f"--shard {one_line(text, 40)}: must be K/N, the Kth of N, as in 3/10")
+    return Shard(part, parts)
 
 
 def experiment(
@@ -42,6 +65,15 @@ def experiment(
         bool, typer.Option("--dry-run", help="Say what it will take; do nothing.")
     ] = False,
     resume: Resume = False,
+    shard: Annotated[
+        Shard | None,
+        typer.Option(
+            "--shard",
+            help="Of N machines the Kth: let every Nth robot live.",
+            metavar="K/N",
+            parser=checked_shard,
+        ),
+    ] = None,
     workers: Workers = None,
     database: Database = DEFAULT_DATABASE,
     as_json: AsJson = False,
@@ -62,12 +94,15 @@ def experiment(
     with opened(database, create=wanted is not None, write=True) as store:
         what = wanted or _interrupted(store, database)
         info = lab.experiment.begin(store, what, now)
-        with progress(one_line(what.name), what.robots, "robots") as bar:
-            for saved in lab.experiment.run(store, what, info, count, now, say):
+        robots = (shard or Shard()).of(what.robots)
+        with progress(one_line(what.name), len(robots), "robots") as bar:
+            for saved in lab.experiment.run(store, what, info, count, now, say, robots):
                 bar(saved, "")
         results = _results(store, info)
-    say(f"experiment {one_line(what.name)}: {what.robots} robots, saved in {database}")
-    said = (what.name, what.question, what.robots, results)
+        there = len(store.sessions.saved_robots(info.conditions[0][1]))
+    of_all = f"{there}" if there == what.robots else f"{there} of {what.robots}"
+    say(f"experiment {one_line(what.name)}: {of_all} robots, saved in {one_line(database)}")
+    said = (what.name, what.question, there, results)
     show_either(
         as_json=as_json,
         value=lambda: experiment_json(*said),

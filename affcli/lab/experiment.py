@@ -261,12 +261,17 @@ def run(
     workers: int,
     now: Callable[[], str],
     warn: Callable[[str], object] = str,
+    robots: Sequence[int] | None = None,
 ) -> Iterator[int]:
-    """Let all robots of an experiment live, as `conduct` does, and mark it as done."""
+    """Let robots of an experiment live, all or some, as `conduct` does.
+
+    It is done when all of them are in the store, whoever brought them there.
+    """
     sessions = [session for _, session in info.conditions]
-    robots = range(experiment.robots)
-    yield from conduct(store, experiment, sessions, robots, workers, now, warn)
-    store.experiments.finish(info.id, now())
+    chosen = range(experiment.robots) if robots is None else robots
+    yield from conduct(store, experiment, sessions, chosen, workers, now, warn)
+    if len(store.sessions.saved_robots(sessions[0])) == experiment.robots:
+        store.experiments.finish(info.id, now())
 
 
 @dataclass(frozen=True, slots=True)

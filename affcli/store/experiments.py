@@ -76,7 +76,7 @@ class Experiments:
         """Take over another question, or more robots."""
         more = any(
             one["robots"] != spec.robots
-            for one, (_, spec, _) in zip(_sessions(connection, found.id), conditions, strict=True)
+            for one, (_, spec, _) in zip(sessions_of(connection, found.id), conditions, strict=True)
         )
         again = {"status": "running", "finished_at": None} if more else {}
         connection.execute(
@@ -108,7 +108,9 @@ class Experiments:
         """Return the experiments, oldest first."""
         with self.database.reading() as connection:
             found = mappings(connection, sa.select(experiment).order_by(experiment.c.id))
-            return tuple(reading.experiment(row, _sessions(connection, row["id"])) for row in found)
+            return tuple(
+                reading.experiment(row, sessions_of(connection, row["id"])) for row in found
+            )
 
     def finish(self, experiment_id: int, now: str) -> None:
         """Mark an experiment and its sessions as done; what was done before stays as it is."""
@@ -124,7 +126,7 @@ class Experiments:
                 )
 
 
-def _sessions(connection: sa.Connection, number: int) -> list[dict[str, Any]]:
+def sessions_of(connection: sa.Connection, number: int) -> list[dict[str, Any]]:
     """Return the sessions of an experiment, in the order of its conditions."""
     wanted = sa.select(session).filter_by(experiment_id=number).order_by(session.c.id)
     return mappings(connection, wanted)
