@@ -20,7 +20,9 @@ from affcli.cli.options import (
     checked_workers,
 )
 from affcli.cli.terminal import now, progress, say, show_either
+from affcli.core.names import one_of
 from affcli.core.records import ExperimentInfo
+from affcli.core.specs import Keep
 from affcli.errors import BadInputError, UsageError, one_line
 from affcli.report.experiment import (
     ConditionResult,
@@ -53,6 +55,11 @@ def checked_shard(text: str) -> Shard:
     return Shard(part, parts)
 
 
+def checked_keep(text: str) -> Keep:
+    """Return how much of a life is kept; UsageError when there is no such measure."""
+    return one_of("measure of what to keep", text, Keep)
+
+
 def experiment(
     *,
     file: Annotated[
@@ -74,6 +81,15 @@ def experiment(
             parser=checked_shard,
         ),
     ] = None,
+    keep: Annotated[
+        Keep,
+        typer.Option(
+            "--keep",
+            help="all; rows: no behaviors; trials: only how runs and trials ended.",
+            metavar="WHAT",
+            parser=checked_keep,
+        ),
+    ] = "all",  # type: ignore[assignment]  # parsed like any other
     workers: Workers = None,
     database: Database = DEFAULT_DATABASE,
     as_json: AsJson = False,
@@ -89,14 +105,14 @@ def experiment(
         raise UsageError("which experiment? give a TOML file, or --resume")
     wanted = None if file is None else lab.definition.experiment_file(file)
     if dry_run and wanted is not None:
-        _say_cost(wanted, count, as_json=as_json)
+        _say_cost(wanted, count, keep, as_json=as_json)
         return
     with opened(database, create=wanted is not None, write=True) as store:
         what = wanted or _interrupted(store, database)
         info = lab.experiment.begin(store, what, now)
         robots = (shard or Shard()).of(what.robots)
         with progress(one_line(what.name), len(robots), "robots") as bar:
-            for saved in lab.experiment.run(store, what, info, count, now, say, robots):
+            for saved in lab.experiment.run(store, what, info, count, now, say, robots, keep):
                 bar(saved, "")
         results = _results(store, info)
         there = len(store.sessions.saved_robots(info.conditions[0][1]))
@@ -119,10 +135,12 @@ def _interrupted(store: "stores.Store", database: Path) -> "lab.experiment.Exper
     return lab.definition.experiment_of(begun[-1].definition, place)
 
 
-def _say_cost(what: "lab.experiment.Experiment", workers: int, *, as_json: bool) -> None:
+def _say_cost(
+    what: "lab.experiment.Experiment", workers: int, keep: Keep, *, as_json: bool
+) -> None:
     """Let one robot live, and say what all of them will take."""
     with progress("one robot", 1.0):
-        found = lab.experiment.estimate(what, now)
+        found = lab.experiment.estimate(what, now, keep)
     counts = (found.robots, found.learning_runs, found.trials, found.robot_hours)
     cost = Cost(*counts, found.seconds, found.bytes, workers)
     names = [condition.name for condition in what.conditions]

@@ -10,7 +10,7 @@ from affcli.core.choice import Reasons
 from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Movement
 from affcli.core.setting import Value
-from affcli.core.specs import LearningSpec, SessionSpec, TrialSpec
+from affcli.core.specs import Keep, LearningSpec, SessionSpec, TrialSpec
 from affcli.core.task import GoalRegion
 from affcli.core.tool import Tool
 from affcli.core.trial import Outcome
@@ -78,6 +78,7 @@ class LearningRunInfo:
         redraws: wrist positions drawn again because the attractor was in the way.
         robot_seconds: the robot clock.
         checkpoint: what it needs to go on; None at the beginning and when done.
+        kept: how much of it is stored.
     """
 
     id: int
@@ -91,6 +92,7 @@ class LearningRunInfo:
     redraws: int
     robot_seconds: float
     checkpoint: dict[str, Any] | None
+    kept: Keep = Keep.ALL
 
 
 class ChangedPart(NamedTuple):

@@ -37,6 +37,19 @@ LIVES = (REPRODUCE, EXPERIMENT)
 """The kinds of sessions that are whole lives of robots: what they learned, and their trials."""
 
 
+class Keep(StrEnum):
+    """How much of a robot's life is stored. All of it is a function of its spec, and can be made
+    again.
+    """
+
+    ALL = "all"
+    """Behaviors, rows, trials, steps."""
+    ROWS = "rows"
+    """All but the behaviors of learning."""
+    TRIALS = "trials"
+    """Of learning runs and trials only what came of them."""
+
+
 class Counters(StrEnum):
     """Which counters a trial starts from and where its updates go."""
 

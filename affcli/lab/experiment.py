@@ -21,6 +21,7 @@ from affcli.core.specs import (
     BROKEN_SHAPE,
     BROKEN_TOOL,
     EXPERIMENT,
+    Keep,
     LearningSpec,
     LearningStep,
     Protocol,
@@ -225,6 +226,7 @@ def conduct(
     workers: int,
     now: Callable[[], str],
     warn: Callable[[str], object] = str,
+    keep: Keep = Keep.ALL,
 ) -> Iterator[int]:
     """Let robots of an experiment live; save each as it is done.
 
@@ -239,6 +241,7 @@ def conduct(
         workers: processes; 1 runs everything in this one.
         now: gives the time as ISO text.
         warn: is told when the processes cannot be started, and one does it all.
+        keep: how much of their lives is saved.
 
     Yields:
         How many of these robots are saved: at the beginning, and each time one more is.
@@ -248,7 +251,7 @@ def conduct(
     missing = [robot for robot in robots if robot not in there]
     saved = len(robots) - len(missing)
     yield saved
-    for life in in_order(partial(_packed_life, experiment), missing, workers, warn):
+    for life in in_order(partial(_packed_life, experiment, keep), missing, workers, warn):
         store.sessions.save_robot(made_with, life, now())
         saved += 1
         yield saved
@@ -262,6 +265,7 @@ def run(
     now: Callable[[], str],
     warn: Callable[[str], object] = str,
     robots: Sequence[int] | None = None,
+    keep: Keep = Keep.ALL,
 ) -> Iterator[int]:
     """Let robots of an experiment live, all or some, as `conduct` does.
 
@@ -269,7 +273,7 @@ def run(
     """
     sessions = [session for _, session in info.conditions]
     chosen = range(experiment.robots) if robots is None else robots
-    yield from conduct(store, experiment, sessions, chosen, workers, now, warn)
+    yield from conduct(store, experiment, sessions, chosen, workers, now, warn, keep)
     if len(store.sessions.saved_robots(sessions[0])) == experiment.robots:
         store.experiments.finish(info.id, now())
 
@@ -293,10 +297,10 @@ class Estimate:
     bytes: int
 
 
-def estimate(experiment: Experiment, now: Callable[[], str]) -> Estimate:
+def estimate(experiment: Experiment, now: Callable[[], str], keep: Keep = Keep.ALL) -> Estimate:
     """Let the first robot live, save it in a database that is thrown away, and measure both."""
     began = time.perf_counter()
-    packed = _packed_life(experiment, 0)
+    packed = _packed_life(experiment, keep, 0)
     seconds = time.perf_counter() - began
     with TemporaryDirectory() as folder:
         path = Path(folder, "one_robot.db")
@@ -318,9 +322,9 @@ def _made_with(condition: Condition) -> dict[str, str]:
     return versions(condition.world, condition.parts.sensor)
 
 
-def _packed_life(experiment: Experiment, robot: int) -> PackedRobot:
+def _packed_life(experiment: Experiment, keep: Keep, robot: int) -> PackedRobot:
     """Return a robot's life as rows: the process that lived it does the packing."""
-    return pack_robot(one_robot(experiment, robot))
+    return pack_robot(one_robot(experiment, robot), keep)
 
 
 def _changes(stored: ExperimentInfo, wanted: Experiment) -> str:

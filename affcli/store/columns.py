@@ -36,6 +36,7 @@ COLUMNS: dict[str, tuple[str, ...]] = {
         *("session_id", "key", "tool", "tool_key", "seed", "robot", "hours", "behaviors_limit"),
         *_PARTS,
         *("behaviors", "rows", "resets", "redraws", "robot_seconds", "checkpoint", "calibration"),
+        "kept",
     ),
     "behavior": (
         *("learning_run_id", "step", "clock", "exploratory_behavior", "exploratory_params"),

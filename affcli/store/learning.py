@@ -17,6 +17,7 @@ from affcli.errors import DatabaseError, UsageError, one_line
 from affcli.store import reading, rows
 from affcli.store.comparing import by_number, differences
 from affcli.store.connection import Database, insert_many, insert_one, mappings, numbered
+from affcli.store.keeping import require_kept
 from affcli.store.tables import affordance, behavior, learning_run, tool, trial
 
 COUNTERS = frozenset({"times_used", "times_successful"})
@@ -185,6 +186,7 @@ class Learning:
             The table; and the id of each row in the store by its learning step.
         """
         learned = self.run(run_id).spec
+        require_kept(self.database, "rows", learning_run.c.id == run_id)
         found = self.database.mappings(sa.select(affordance).filter_by(learning_run_id=run_id))
         fresh = dict.fromkeys(COUNTERS, 1) if as_learned else {}
         place, counted = (
@@ -206,6 +208,7 @@ class Learning:
 
     def rows(self, run_id: int) -> tuple[StoredRow, ...]:
         """Return the rows of a learning run, oldest first."""
+        require_kept(self.database, "rows", learning_run.c.id == run_id)
         wanted = sa.select(affordance).filter_by(learning_run_id=run_id)
         return tuple(
             map(reading.stored_row, self.database.mappings(wanted.order_by(affordance.c.step)))
@@ -220,6 +223,7 @@ class Learning:
             DatabaseError: behaviors that made rows are missing.
         """
         b = behavior.c
+        require_kept(self.database, "behaviors", learning_run.c.id == run_id)
         wanted = sa.select(behavior).where(b.learning_run_id == run_id, b.change_detected == 1)
         made = self.database.mappings(wanted)
         if len(made) < self.run(run_id).rows:
@@ -241,6 +245,7 @@ class Learning:
                 attractor truly was.
         """
         info, b = self.run(run_id), behavior.c
+        require_kept(self.database, "behaviors", learning_run.c.id == run_id)
         wanted = sa.select(behavior).where(
             b.learning_run_id == run_id, b.step.in_((number - 1, number))
         )
@@ -285,6 +290,7 @@ class Learning:
         """
         if not steps:
             return ()
+        require_kept(self.database, "behaviors", learning_run.c.id == run_id)
         first, last = steps[0][0].step, steps[-1][0].step
         done = {record.step: rows.behavior_row(run_id, record, truth) for record, truth in steps}
         made = {

@@ -23,7 +23,7 @@ from affcli.core.records import (
     StoredStep,
     TrialInfo,
 )
-from affcli.core.specs import Counters, LearningSpec, Protocol, SessionSpec, TrialSpec
+from affcli.core.specs import Counters, Keep, LearningSpec, Protocol, SessionSpec, TrialSpec
 from affcli.core.task import GoalRegion, Task
 from affcli.core.tool import Tool, tool_from_canonical, unknown_tool
 from affcli.core.trial import Outcome
@@ -185,6 +185,7 @@ def learning_run(row: Columns) -> LearningRunInfo:
             spec=learning_spec(row),
             versions=dict(json.loads(row["versions"])),
             checkpoint=None if row["checkpoint"] is None else dict(json.loads(row["checkpoint"])),
+            kept=Keep(row["kept"]),
             **{name: row[name] for name in names},
         )
 

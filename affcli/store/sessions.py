@@ -90,11 +90,8 @@ class Sessions:
                     "status": "done",
                     "finished_at": now,
                     "calibration": run.calibration,
-                    "behaviors": len(run.behaviors),
-                    "rows": len(run.affordances),
-                    "resets": run.resets,
-                    "redraws": run.redraws,
-                    "robot_seconds": run.robot_seconds,
+                    "kept": run.kept.value,
+                    **run.sums,
                 }
                 run_id = insert_run(connection, row, run.spec)
                 insert_many(connection, behavior, [(run_id, *one) for one in run.behaviors])

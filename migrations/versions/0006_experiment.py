@@ -31,6 +31,10 @@ def upgrade() -> None:
         "ALTER TABLE session ADD COLUMN condition TEXT "
         "CHECK ((condition IS NULL) = (experiment_id IS NULL))"
     )
+    op.execute(
+        "ALTER TABLE learning_run ADD COLUMN kept TEXT NOT NULL DEFAULT 'all' "
+        "CHECK (kept IN ('all', 'rows', 'trials'))"
+    )
     op.execute("CREATE UNIQUE INDEX session_by_condition ON session (experiment_id, condition)")
 
 

@@ -1,19 +1,23 @@
 """Many robots under several conditions: paired, each once, the same however they are run."""
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import pytest
 
-from affcli.core.specs import Protocol, RobotRecord
+from affcli.core.row_filter import RowFilter
+from affcli.core.specs import Keep, Protocol, RobotRecord
 from affcli.errors import UsageError
 from affcli.lab import experiment, reproduction
 from affcli.lab.definition import experiment_of
 from affcli.lab.experiment import Experiment, begin, estimate, one_robot, run
 from affcli.lab.reproduction import Reproduced
+from affcli.lab.table import listed_rows
 from affcli.store import Store, check, open_store, run_sql, upgrade
+from affcli.store.columns import COLUMNS
 from tests.lab.quick import PLANNER, now, taken
 from tests.lab.test_reproduction import contents
 
@@ -31,6 +35,13 @@ TABLES = {
     ],
 }
 WHAT = experiment_of(TABLES, "a test")
+KEPT_BY_ALL = ("experiment", "session", "learning_run", "trial", "tool")
+NEEDED_BY = {
+    Keep.TRIALS: KEPT_BY_ALL,
+    Keep.ROWS: (*KEPT_BY_ALL, "affordance", "step"),
+    Keep.ALL: (*KEPT_BY_ALL, "affordance", "step", "behavior"),
+}
+"""The tables that hold what is kept."""
 OLD = Path(__file__).parents[1] / "store" / "databases" / "interrupted_0004.db"
 """A reproduction of two robots that was interrupted after one, made by revision 0004."""
 
@@ -200,6 +211,43 @@ def test_a_reproduction_that_revision_0004_interrupted_goes_on(tmp_path: Path) -
                 every = f"select * from {table}"
                 assert run_sql(path, every).rows == run_sql(fresh.path, every).rows
     assert [finding for finding in check(path) if finding.wrong] == []
+
+
+@pytest.mark.parametrize("keep", Keep)
+def test_what_is_kept_is_the_same_and_what_is_not_is_said(
+    store: Store, another_store: Store, keep: Keep
+) -> None:
+    what, kept = replace_head(robots=1), NEEDED_BY[keep]
+    run_all(another_store, what)
+    info = begin(store, what, now)
+    assert list(run(store, what, info, 1, now, keep=keep)) == [0, 1]
+    assert [finding for finding in check(store.path) if finding.wrong] == []
+    for table, columns in COLUMNS.items():
+        names = ", ".join(name for name in columns if name != "kept")
+        every = f"select {names} from {table}"
+        wanted = run_sql(another_store.path, every).rows if table in kept else ()
+        assert run_sql(store.path, every).rows == wanted, table
+    assert {one.kept for one in store.learning.runs(session_id=1)} == {keep}
+    counts = store.results.success_counts(1)
+    assert counts == another_store.results.success_counts(1)
+    readers: dict[str, Callable[[], object]] = {
+        "affordance": lambda: store.learning.table(1),
+        "step": lambda: store.trials.steps(1),
+        "behavior": lambda: store.learning.scene(1, 1),
+    }
+    for table, read in readers.items():
+        if table in kept:
+            assert read()
+        else:
+            words = rf"run 1: its .* were not kept \(--keep {keep}\); .* makes them again"
+            with pytest.raises(UsageError, match=words):
+                read()
+    rows = partial(listed_rows, store, store.learning.runs(session_id=1), RowFilter(), None)
+    if keep is Keep.TRIALS:
+        with pytest.raises(UsageError, match="run 1: only its trials were kept"):
+            rows()
+    else:
+        assert rows()
 
 
 def test_a_life_is_a_pure_function(life: RobotRecord) -> None:
