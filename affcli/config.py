@@ -180,7 +180,7 @@ def load_settings(path: Path | None, changes: Sequence[str] = ()) -> Settings:
     values, source = _defaults(), ""
     if path is not None:
         source = f"config {one_line(path)}"
-        values |= _checked(_toml_file(path, source), source)
+        values |= _checked(toml_file(path, source), source)
     for change in changes:
         values |= _checked(_change(change), "--set")
     sources = (source, "--set" if changes else "")
@@ -194,6 +194,28 @@ def settings_with(overrides: Mapping[str, Any], source: str) -> Settings:
         BadInputError: as `load_settings`, quoting `source`.
     """
     return _settings(_defaults() | _checked(overrides, source), source)
+
+
+def settings_by_name(values: Mapping[str, Any], source: str) -> Settings:
+    """Return the defaults with overrides by the names of settings, ``section.key``.
+
+    Raises:
+        BadInputError: as `load_settings`, quoting `source`.
+    """
+    return _settings(_defaults() | checked_by_name(values, source), source)
+
+
+def checked_by_name(values: Mapping[str, Any], source: str) -> dict[str, Value]:
+    """Return values of settings by their names, each checked by itself.
+
+    Raises:
+        BadInputError: as `load_settings`, quoting `source`.
+    """
+    sections: dict[str, dict[str, Any]] = {}
+    for name, value in values.items():
+        section, _, key = name.partition(".")
+        sections.setdefault(section, {})[key] = value
+    return _checked(sections, source)
 
 
 def with_sensor(settings: Settings, kind: SensorKind | None) -> Settings:
@@ -216,7 +238,7 @@ def load_colors(path: Path | None) -> tuple[ColorClass, ...]:
         tools = paper_tools(Workspace().tools).values()
         return table_palette(Workspace(), {tool.name: tool.color for tool in tools})
     source = f"colors {one_line(path)}"
-    sections = _toml_file(path, source)
+    sections = toml_file(path, source)
     if not sections:
         raise BadInputError(
             f"{source}: no colour in it; name one, as [cup] and rgb = [30, 110, 200]"
@@ -326,8 +348,11 @@ def _change(change: str) -> dict[str, dict[str, Any]]:
     return {section: {key: value}}
 
 
-def _toml_file(path: Path, source: str) -> dict[str, Any]:
-    """Return what a TOML file holds; BadInputError, quoting `source`, when it cannot be read."""
+def toml_file(path: Path, source: str) -> dict[str, Any]:
+    """Return what a TOML file holds; BadInputError, quoting `source`, when it cannot be read.
+
+    No file that grows when it is read gets further than this: a million bytes, four levels deep.
+    """
     try:
         with path.open("rb") as file:
             data = file.read(LARGEST_FILE + 1)

@@ -42,9 +42,11 @@ DATA = "migrations/README.md"
 CODE = "affcli/README.md"
 CHOICES = "affcli/core/README.md"
 CAMERA = "affcli/perception/README.md"
+EXPERIMENTS = "experiments/README.md"
 OUR_FOLDERS = r"(?:affcli|tests|experiments|migrations)"
 LIGHTER = {
     "reproduce": ("--robots", "1", "--workers", "1", "--config", "leisurely.toml"),
+    "experiment": ("--dry-run",),
     "learn --sensor camera": ("--behaviors", "60"),
 }
 """Options that are added to commands which would take a minute."""
@@ -86,6 +88,11 @@ def demo(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "leisurely.toml").write_text("[motion]\nhold = 100.0\n[trial]\nmax_steps = 2\n")
     for code in blocks(CHOICES, "toml"):
         (folder / "noisy.toml").write_text(code)
+    for code in blocks(EXPERIMENTS, "toml"):
+        (folder / "share.toml").write_text(code)
+    for name in ("a.db", "b.db", "shard1.db", "shard2.db"):
+        shutil.copy(folder / "demo.db", folder / name)
+    (folder / "experiments").symlink_to(ROOT / "experiments")
     cup = blocks(CAMERA, "toml")[0]
     assert "30, 110, 200" in cup
     (folder / "colors.toml").write_text(cup.replace("30, 110, 200", "234, 117, 20"))  # the puck's

@@ -56,7 +56,7 @@ CAMERA = Group(
 
 DB = Group(
     "db",
-    "Check, copy and upgrade the database file.",
+    "Check, copy, merge and upgrade the database file.",
     (
         Command(
             "upgrade",
@@ -69,6 +69,12 @@ DB = Group(
             "db:backup",
             "Write a checked copy of the database.",
             "affcli db backup --out copy.db",
+        ),
+        Command(
+            "merge",
+            "db:merge",
+            "Bring robots of the same experiments together from several databases.",
+            "affcli db merge a.db b.db --into all.db",
         ),
         Command(
             "check",
@@ -147,11 +153,13 @@ FIGURE = Group(
             "compare",
             "figure_compared:compare",
             "Draw differences between conditions with their intervals.",
+            "affcli figure compare --session 1 --session 2 --out compare.pdf",
         ),
         Command(
             "curve",
             "figure_compared:curve",
             "Draw a measure of conditions against robot time, rows or a swept setting.",
+            "affcli figure curve --session 1 --session 2 --out curve.pdf",
         ),
     ),
 )
@@ -242,6 +250,13 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
             "affcli reproduce --robots 20 --db reproduce.db",
             goes_on=True,
         ),
+        Command(
+            "experiment",
+            "experiment:experiment",
+            "Let many robots live under several conditions, as a file says.",
+            "affcli experiment experiments/camera/experiment.toml --dry-run",
+            goes_on=True,
+        ),
     ),
     "Look": (
         Command(
@@ -251,8 +266,18 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
             "kind.",
             "affcli report",
         ),
-        Command("compare", "compare:compare", "Compare conditions robot by robot: did it matter?"),
-        Command("power", "power:power", "Say how many robots it takes to see a difference."),
+        Command(
+            "compare",
+            "compare:compare",
+            "Compare conditions robot by robot: did it matter?",
+            "affcli compare --session 1 --session 2",
+        ),
+        Command(
+            "power",
+            "power:power",
+            "Say how many robots it takes to see a difference.",
+            "affcli power --session 1 --difference 2",
+        ),
         Command(
             "replay",
             "replay:replay",

@@ -11,6 +11,7 @@ from affcli import registry, store
 from affcli.cli.options import DEFAULT_DATABASE, DEFAULT_TOOL
 from affcli.cli.terminal import say
 from affcli.core.records import LearningRunInfo
+from affcli.core.specs import LIVES
 from affcli.errors import UsageError, one_line
 
 
@@ -57,7 +58,7 @@ def learned_runs(
     runs = [found for found in map(records.learning.latest, names) if found is not None]
     if not runs:
         wanted = "tools" if tool is None else registry.part("tools", tool).name
-        only = " but by robots of a reproduction" if records.sessions.all("reproduce") else ""
+        only = " but by robots of a reproduction" if records.sessions.all(*LIVES) else ""
         learning = with_database(f"affcli learn --tool {tool or 't-hook'}", database)
         raise UsageError(
             f"nothing learned with the {wanted} in {database}{only}; first run: {learning}"

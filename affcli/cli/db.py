@@ -9,7 +9,7 @@ import typer
 from affcli import store
 from affcli.cli.files import require_new
 from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database, Force
-from affcli.cli.terminal import say, show_json, show_rows
+from affcli.cli.terminal import now, progress, say, show_json, show_rows
 from affcli.errors import DatabaseError, one_line
 
 
@@ -40,6 +40,35 @@ def backup(
     require_new(copy, force=force)
     store.backup(database, copy)
     say(f"a copy of {one_line(database, 1000)}: {one_line(copy, 1000)}")
+
+
+def merge(
+    *,
+    files: Annotated[
+        list[Path], typer.Argument(help="The databases.", metavar="FILE...", readable=False)
+    ],
+    into: Annotated[
+        Path,
+        typer.Option("--into", help="Where to; made if it is not there.", metavar="FILE"),
+    ],
+) -> None:
+    """Bring robots of the same experiments together from several databases.
+
+    Robots of experiments and reproductions are merged, each once; the same again changes nothing.
+    Databases that contradict each other are refused, and nothing is changed.
+    """
+    store.tell_of_waiting(say)
+    with progress("merging", 1.0) as bar:
+        merged = store.merge(
+            files,
+            into,
+            now(),
+            lambda done, of: bar(done / of, f"{done} of {of} robots"),
+        )
+    there = f", {merged.there} were there already" if merged.there else ""
+    say(f"{merged.new} robots merged into {one_line(into, 1000)}{there}")
+    for what, count in merged.left_out.items():
+        say(f"left out, for only whole experiments are merged: {count} {what}")
 
 
 def check(*, database: Database = DEFAULT_DATABASE, as_json: AsJson = False) -> int:

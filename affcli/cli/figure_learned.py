@@ -30,6 +30,7 @@ from affcli.cli.options import (
 from affcli.config import load_settings
 from affcli.core.identity import canonical_json
 from affcli.core.records import LearningRunInfo
+from affcli.core.specs import LIVES
 from affcli.errors import UsageError
 from affcli.report import figures
 from affcli.report.captions import (
@@ -258,7 +259,7 @@ def _runs_to_draw(
     else:
         runs = [run for run in store.learning.runs() if not tools or run.spec.tool in tools]
     if not runs:
-        reproduced = store.sessions.all("reproduce")
+        reproduced = store.sessions.all(*LIVES)
         if reproduced:
             raise UsageError(
                 f"no learning runs but of robots: --session {reproduced[-1].id} draws these"

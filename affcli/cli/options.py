@@ -5,6 +5,7 @@ right. An option that only one command has stands in that command's file.
 """
 
 import math
+import os
 import re
 from collections.abc import Callable, Iterable
 from functools import partial
@@ -122,6 +123,14 @@ def checked_tools(names: Iterable[str] | None) -> list[str]:
     """Return registered tools, each given by itself or several names with commas, once each."""
     given = ([text] if ":" in text else text.split(",") for text in names or ())
     return list(dict.fromkeys(checked_tool(tool) for several in given for tool in several))
+
+
+def checked_workers(workers: int | None) -> int:
+    """Return how many processes are to work: one for each core where nothing is said."""
+    if workers is not None:
+        return workers
+    known = hasattr(os, "sched_getaffinity")
+    return min(len(os.sched_getaffinity(0)), MOST_WORKERS) if known else 1
 
 
 def check_if_given(check: Callable[[Any], Any]) -> Callable[[Any], Any]:
@@ -280,6 +289,15 @@ Pushes = Annotated[
     int,
     typer.Option(
         "--pushes", help="How many.", metavar="N", parser=check_count("--pushes", MOST_TRIES)
+    ),
+]
+Workers = Annotated[
+    int | None,
+    typer.Option(
+        "--workers",
+        help="Processes; one for each core if not given.",
+        metavar="N",
+        callback=check_count("--workers", MOST_WORKERS),
     ),
 ]
 Run = Annotated[

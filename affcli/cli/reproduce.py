@@ -1,6 +1,5 @@
 """``affcli reproduce``: the whole paper on many robots (§7)."""
 
-import os
 from typing import Annotated
 
 import typer
@@ -10,7 +9,6 @@ from affcli.cli.database import opened
 from affcli.cli.options import (
     DEFAULT_DATABASE,
     DEFAULT_PLANNER,
-    MOST_WORKERS,
     AsJson,
     Binding,
     Changes,
@@ -22,8 +20,10 @@ from affcli.cli.options import (
     Resume,
     Seed,
     Sensor,
+    Workers,
     World,
     check_count,
+    checked_workers,
 )
 from affcli.cli.terminal import now, progress, say, show_either
 from affcli.config import load_settings, with_sensor
@@ -53,15 +53,7 @@ def reproduce(
     sensor: Sensor = None,
     world: World = None,
     resume: Resume = False,
-    workers: Annotated[
-        int | None,
-        typer.Option(
-            "--workers",
-            help="Processes; one for each core if not given.",
-            metavar="N",
-            callback=check_count("--workers", MOST_WORKERS),
-        ),
-    ] = None,
+    workers: Workers = None,
     database: Database = DEFAULT_DATABASE,
     config: Config = None,
     changes: Changes = None,
@@ -76,13 +68,6 @@ def reproduce(
     own = any(given) or str(planner) != DEFAULT_PLANNER
     if robots is None:
         robots = FEW_ROBOTS
-    if workers is None:
-        workers = (
-            min(len(os.sched_getaffinity(0)), MOST_WORKERS)
-            if hasattr(os, "sched_getaffinity")
-            else 1
-        )
-
     settings = with_sensor(load_settings(config, changes or ()), sensor)
     chosen = lab.run_parts.RunParts.chosen(
         settings, repertoire=repertoire or (), binding=binding, explorer=explorer, world=world
@@ -96,11 +81,11 @@ def reproduce(
                     f"nothing to resume in {database}; begin one: affcli reproduce --robots 20"
                 )
             what, robots = lab.reproduction.reproduced_again(begun[-1].spec), begun[-1].spec.robots
-        events = lab.reproduction.reproduce(store, what, robots, workers, now, say)
+        events = lab.reproduction.reproduce(store, what, robots, checked_workers(workers), now, say)
         session = next(events)
-        with progress("reproducing", robots) as bar:
+        with progress("reproducing", robots, "robots") as bar:
             for saved in events:
-                bar(saved, f"{saved} of {robots} robots")
+                bar(saved, "")
         result = lab.overview.reproduction_of(store, session, robots)
     say(f"session {session}: {robots} robots, seed {what.seed}, saved in {database}")
     show_either(

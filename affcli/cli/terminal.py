@@ -11,6 +11,7 @@ from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 from textwrap import fill
+from threading import Event, Thread
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 from affcli.errors import AffcliError, one_line
@@ -27,6 +28,8 @@ JSON_FORMAT = 1
 NARROWEST = 20
 """A terminal of fewer columns is written to as if it had these."""
 WIDE_ENOUGH_FOR_BARS = 72
+A_MINUTE = 60.0
+"""Seconds between two lines that say how far something is, where there is no terminal."""
 _command = ""
 
 
@@ -200,50 +203,77 @@ def shows_braille() -> bool:
 
 
 @contextmanager
-def progress(description: str, total: float) -> "Iterator[Callable[[float, str], object]]":
-    """Give a bar on stderr that is told how much is done, and a status, and leaves nothing behind.
+def progress(
+    description: str, total: float, noun: str = ""
+) -> "Iterator[Callable[[float, str], object]]":
+    """Give what is told how much is done, and a status, and shows it on stderr from the beginning.
 
-    Silent without a terminal.
+    To a terminal it is a bar that leaves nothing behind; otherwise, to a log file for one, a line a
+    minute. Both tell how long it has taken and how long it will.
+
+    Args:
+        description: of what is done.
+        total: how much there is to do.
+        noun: what is counted, where the count itself is the status.
     """
-    with bars({0: (description, total)}) as tell:
+    with bars({0: (description, total)}, noun) as tell:
         yield partial(tell, 0)
 
 
 @contextmanager
 def bars(
-    tasks: "Mapping[int, tuple[str, float]]",
-) -> "Iterator[Callable[[int, float, str], object]]":
+    tasks: "Mapping[int, tuple[str, float]]", noun: str = ""
+) -> "Iterator[Callable[..., object]]":
     """Give bars on stderr, one below the other, as `progress` gives one.
 
     Args:
         tasks: what each is of, and how much there is to do, by a number of its own.
+        noun: what is counted, where the count itself is the status.
+
+    Yields:
+        What is told of a task by its number how much is done, and a status.
     """
+    far = {number: _Progress(total, noun) for number, (_, total) in tasks.items()}
+
+    def told(number: int, done: float, status: str = "") -> None:
+        far[number].update(done, status)
+
     if not sys.stderr.isatty():
-        yield lambda _task, _done, _status: None
+        with _said_each_minute(
+            lambda: "; ".join(f"{tasks[n][0]}: {one.words()}" for n, one in far.items())
+        ):
+            yield told
         return
-    from rich.progress import BarColumn, Progress, ProgressColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, Progress, ProgressColumn, Task, TextColumn
     from rich.table import Column
+    from rich.text import Text
 
     console = _console(sys.stderr)
     longest = max((len(description) for description, _ in tasks.values()), default=0)
-    words = Column(no_wrap=True, min_width=min(longest, console.width // 2))
-    columns: list[ProgressColumn] = [
-        TextColumn("{task.description}", table_column=words),
-        BarColumn(bar_width=10),
-        TextColumn("{task.fields[status]}"),
-        TimeRemainingColumn(),
-    ]
-    if console.width < WIDE_ENOUGH_FOR_BARS:
-        del columns[1::2]
-    room = console.width - longest - (20 if len(columns) > 2 else 1)
+    shows_bars = console.width >= WIDE_ENOUGH_FOR_BARS
+    room = console.width - longest - (12 if shows_bars else 1)
+
+    class Words(ProgressColumn):
+        """How far it is; the time goes on while nothing else does."""
+
+        def render(self, task: Task) -> Text:
+            return Text(_parts_within(far[task.fields["number"]].words(), room))
+
+    names = Column(no_wrap=True, min_width=min(longest, console.width // 2))
+    columns = [TextColumn("{task.description}", table_column=names), BarColumn(10), Words()]
+    if not shows_bars:
+        del columns[1]
     with Progress(*columns, console=console, transient=True) as shown:
         ids = {
-            number: shown.add_task(description, total=total, status="")
+            number: shown.add_task(description, total=total, number=number)
             for number, (description, total) in tasks.items()
         }
-        yield lambda task, done, status: shown.update(
-            ids[task], completed=done, status=_parts_within(status, room)
-        )
+
+        def update(number: int, done: float, status: str = "") -> None:
+            told(number, done, status)
+            shown.update(ids[number], completed=done)
+
+        yield update
 
 
 def _parts_within(text: str, room: int) -> str:
@@ -253,13 +283,68 @@ def _parts_within(text: str, room: int) -> str:
     return text
 
 
+class _Progress:
+    """How far something is, in words."""
+
+    def __init__(self, total: float, noun: str) -> None:
+        self._total, self._noun, self._began = total, noun, time.monotonic()
+        self._first: float | None = None
+        self._done, self._status = 0.0, ""
+
+    def update(self, done: float, status: str = "") -> None:
+        """Take note of how much is done; what is done at first was done before."""
+        if self._first is None:
+            self._first = done
+        self._done, self._status = done, status
+
+    def words(self) -> str:
+        """Return how much is done, how fast, how long it took and how long it will take."""
+        took, new = time.monotonic() - self._began, self._done - (self._first or 0.0)
+        words = [self._status] if self._status else []
+        if self._noun:
+            words = [f"{self._done:g} of {self._total:g} {self._noun}"]
+        if self._noun and new > 0.0:
+            words.append(f"{60.0 * new / took:.3g} a minute")
+        words.append(_clock(took))
+        if new > 0.0:
+            words.append(f"{_clock(took * (self._total - self._done) / new)} left")
+        return ", ".join(words)
+
+
+def _clock(seconds: float) -> str:
+    """Return a time as ``3:07`` or ``1:02:03``."""
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"
+
+
+@contextmanager
+def _said_each_minute(words: "Callable[[], str]") -> "Iterator[None]":
+    """Say how far it is once a minute while the block runs, whatever the block waits for."""
+    over = Event()
+
+    def tell() -> None:
+        with suppress(AffcliError):  # nobody can read it: the block finds out when it has to say
+            while not over.wait(A_MINUTE):
+                say(words())
+
+    teller = Thread(target=tell, daemon=True)
+    teller.start()
+    try:
+        yield
+    finally:
+        over.set()
+        teller.join()
+
+
 def followed(items: "Iterable[T]", description: str, total: int, noun: str) -> "list[T]":
     """Return all of some items, while a bar counts them as they come."""
-    done = []
-    with progress(description, total) as bar:
+    done: list[T] = []
+    with progress(description, total, noun) as bar:
+        bar(0, "")
         for item in items:
             done.append(item)
-            bar(len(done), f"{len(done)} of {total} {noun}")
+            bar(len(done), "")
     return done
 
 

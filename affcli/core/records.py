@@ -10,7 +10,7 @@ from affcli.core.choice import Reasons
 from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Movement
 from affcli.core.setting import Value
-from affcli.core.specs import LearningSpec, SessionSpec, TrialSpec
+from affcli.core.specs import Keep, LearningSpec, SessionSpec, TrialSpec
 from affcli.core.task import GoalRegion
 from affcli.core.tool import Tool
 from affcli.core.trial import Outcome
@@ -25,12 +25,40 @@ class SessionInfo:
         spec: what it is a function of.
         versions: what it was made with.
         status: ``running`` or ``done``.
+        experiment_id, condition: of which experiment it is which condition; None when of none.
     """
 
     id: int
     spec: SessionSpec
     versions: dict[str, str]
     status: str
+    experiment_id: int | None = None
+    condition: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ExperimentInfo:
+    """An experiment.
+
+    Args:
+        id: its number in the store.
+        name: there is one of a name.
+        question: what it asks.
+        definition: as JSON types: what `affcli.lab.definition` reads.
+        key: of all that its robots' lives are functions of.
+        versions: what it was begun with.
+        status: ``done`` when all its robots are saved, else ``running``.
+        conditions: the name and the session of each, in order.
+    """
+
+    id: int
+    name: str
+    question: str
+    definition: dict[str, Any]
+    key: str
+    versions: dict[str, str]
+    status: str
+    conditions: tuple[tuple[str, int], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +67,8 @@ class LearningRunInfo:
 
     Args:
         id: its number in the store.
-        session_id: the reproduction it is part of; None when it stands for itself.
+        session_id: the session it is part of, of an experiment's first that used it; None when it
+            stands for itself.
         spec: what it is a function of.
         versions: what it was made with.
         status: ``running`` or ``done``.
@@ -49,6 +78,7 @@ class LearningRunInfo:
         redraws: wrist positions drawn again because the attractor was in the way.
         robot_seconds: the robot clock.
         checkpoint: what it needs to go on; None at the beginning and when done.
+        kept: how much of it is stored.
         started_at: when it was begun, ISO text, UTC.
         note: what a person wrote of it; no part of what it is a function of.
     """
@@ -66,6 +96,7 @@ class LearningRunInfo:
     checkpoint: dict[str, Any] | None
     started_at: str
     note: str | None = None
+    kept: Keep = Keep.ALL
 
 
 class Belongings(NamedTuple):

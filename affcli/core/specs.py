@@ -8,7 +8,7 @@ import json
 from dataclasses import dataclass, fields
 from enum import StrEnum
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 from affcli.core.behavior import BehaviorCall, Repertoire, repertoire_json
 from affcli.core.geometry import Pose
@@ -30,6 +30,24 @@ class Protocol(StrEnum):
 
 BROKEN_TOOL, BROKEN_SHAPE = "t-hook", "l-hook"
 """§7.2: the learning was performed with a T-hook which was then replaced with an L-hook."""
+
+
+REPRODUCE, EXPERIMENT = "reproduce", "experiment"
+LIVES = (REPRODUCE, EXPERIMENT)
+"""The kinds of sessions that are whole lives of robots: what they learned, and their trials."""
+
+
+class Keep(StrEnum):
+    """How much of a robot's life is stored. All of it is a function of its spec, and can be made
+    again.
+    """
+
+    ALL = "all"
+    """Behaviors, rows, trials, steps."""
+    ROWS = "rows"
+    """All but the behaviors of learning."""
+    TRIALS = "trials"
+    """Of learning runs and trials only what came of them."""
 
 
 class Counters(StrEnum):
@@ -197,12 +215,13 @@ class VerificationSpec:
 @dataclass(frozen=True)
 class SessionSpec(Parts):
     """What a session of testing trials is a function of, beside the tables it starts from; a
-    reproduction, which learns its own tables, is a function of nothing else.
+    reproduction, which learns its own tables, is a function of nothing else. Of what a
+    condition of an experiment is a function beside, its experiment says.
 
     Args:
-        kind: which command: ``solve``, ``break-tool`` or ``reproduce``.
+        kind: which command: ``solve``, ``break-tool``, or one of `LIVES`.
         seed: of all it does.
-        robots: how many; 1 unless it is a reproduction.
+        robots: how many; 1 unless it is one of `LIVES`.
         planner: how the robots choose rows.
         task_set: the tasks, by the name of their set.
     """
@@ -249,18 +268,37 @@ class TrialRecord:
     calibration: str | None = None
 
 
+class Tested(NamedTuple):
+    """A trial in the life of a robot.
+
+    Args:
+        condition: the condition it is part of, by its place in the experiment.
+        run: the learning run whose table it started from, by its place in the life.
+        trial: the trial.
+    """
+
+    condition: int
+    run: int
+    trial: TrialRecord
+
+
 @dataclass(frozen=True, slots=True)
 class RobotRecord:
-    """The life of one robot of a reproduction: what it learned, and its testing trials.
+    """The life of one robot of an experiment: what it learned, and its testing trials.
 
     Args:
         robot: its number.
-        learned: for each tool the spec, the steps and the robot seconds of its learning run.
-        trials: all its testing trials.
-        calibration: of its camera, as JSON; None without one.
+        learned: the spec, the steps and the robot seconds of each learning run.
+        tested: all its testing trials; several conditions may have used one learning run.
+        calibrations: of its camera in each learning run, as JSON; None without one.
     """
 
     robot: int
     learned: tuple[tuple[LearningSpec, tuple[LearningStep, ...], float], ...]
-    trials: tuple[TrialRecord, ...]
-    calibration: str | None = None
+    tested: tuple[Tested, ...]
+    calibrations: tuple[str | None, ...]
+
+    @property
+    def trials(self) -> tuple[TrialRecord, ...]:
+        """All its testing trials, of whatever condition."""
+        return tuple(one.trial for one in self.tested)

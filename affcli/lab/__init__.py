@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from affcli.lab import breaking as breaking
     from affcli.lab import conditions as conditions
     from affcli.lab import courses as courses
+    from affcli.lab import definition as definition
+    from affcli.lab import experiment as experiment
     from affcli.lab import film_strips as film_strips
     from affcli.lab import learning as learning
     from affcli.lab import learning_curves as learning_curves

@@ -2,6 +2,7 @@
 
 from affcli.analysis.adaptation import AdaptationCourse
 from affcli.analysis.breaking import missing_side
+from affcli.core.specs import LIVES
 from affcli.errors import UsageError
 from affcli.lab.sessions import finished_session
 from affcli.store import Store
@@ -17,7 +18,7 @@ def adaptation_in(store: Store, number: int | None) -> AdaptationCourse:
     Raises:
         UsageError: there is none, or it is not finished or of another kind.
     """
-    session = finished_session(store, number, ["break-tool", "reproduce"])
+    session = finished_session(store, number, ["break-tool", *LIVES])
     if session is None:
         raise UsageError(
             "no finished trials with a broken tool yet; run affcli break-tool, or affcli reproduce"

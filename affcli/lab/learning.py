@@ -16,7 +16,7 @@ CHUNK = 500
 """Behaviors saved in one transaction: what a kill can cost, and half a robot hour."""
 
 Progress = Callable[[LearningRunInfo], None]
-"""Called after every saved chunk with what the store now holds of the run."""
+"""Called at the beginning and after every saved chunk with what the store holds of the run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,13 +60,15 @@ def learn(
         store: open for writing.
         spec: which run.
         now: gives the time as ISO text, for the record only.
-        progress: called after each saved chunk.
+        progress: called at the beginning and after each saved chunk.
 
     Raises:
         DatabaseError: a chunk could not be saved; the chunks before it are kept.
     """
     info = begun(store, spec, now)
     new = info.status != "done"
+    if new and progress is not None:
+        progress(info)
     for one in learn_all(store, [info], now):
         info = one
         if progress is not None:

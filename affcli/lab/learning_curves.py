@@ -7,6 +7,7 @@ from dataclasses import replace
 from affcli.analysis.curves import INTERVALS, Curve, ToolCurves
 from affcli.core.records import LearningRunInfo, SessionInfo
 from affcli.core.results import LearningInterval
+from affcli.core.specs import LIVES
 from affcli.errors import UsageError
 from affcli.report.words import run_words
 from affcli.store import Store
@@ -36,13 +37,13 @@ def curves_of_robots(
 
     Args:
         store: open.
-        session_id: the reproduction.
+        session_id: the reproduction, or the condition of an experiment.
         tools: only these; all if empty.
 
     Raises:
         UsageError: there is no such reproduction, or none of its robots is saved.
     """
-    sessions = {session.id: session for session in store.sessions.all("reproduce")}
+    sessions = {session.id: session for session in store.sessions.all(*LIVES)}
     if session_id not in sessions:
         known = ", ".join(map(str, sessions))
         there_are = f"there is {known}" if known else "there is none yet"

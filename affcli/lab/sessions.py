@@ -7,6 +7,7 @@ from affcli.errors import UsageError, one_line
 from affcli.store import Store
 
 AGAIN = {
+    "experiment": "give the same affcli experiment again: it goes on from there",
     "reproduce": "give the same affcli reproduce again: it goes on from there",
     "break-tool": "run affcli break-tool again",
     "solve": "run affcli solve again",

@@ -9,21 +9,30 @@ from affcli.analysis.regions import region_at, region_of
 from affcli.core.geometry import Point
 from affcli.core.records import LearningRunInfo, StoredRow, StoredStep
 from affcli.core.row_filter import Column, Relation, RowFilter
-from affcli.core.specs import LearningSpec, TrialSpec
+from affcli.core.specs import LIVES, Keep, LearningSpec, TrialSpec
+from affcli.errors import UsageError
 from affcli.store import Store
 
 Made = TypeVar("Made")
 Write = Callable[[Sequence[Column], Iterable[tuple[Any, ...]]], Made]
 """Makes something of columns and their values."""
 
+_NOT_ENOUGH: Mapping[Relation, tuple[Keep, ...]] = {
+    "rows": (Keep.TRIALS,),
+    "behaviors": (Keep.TRIALS, Keep.ROWS),
+    "trials": (),
+    "steps": (Keep.TRIALS,),
+}
+"""With what of a run was kept these are not all there."""
 REGION = Column("region", str)
 """The column that is not in the database."""
 
 
 def every_run(store: Store) -> tuple[LearningRunInfo, ...]:
     """Return all learning runs, also those of reproductions and unfinished ones."""
-    robots = (store.learning.runs(session_id=s.id) for s in store.sessions.all("reproduce"))
-    return (*store.learning.runs(), *(run for runs in robots for run in runs))
+    robots = (store.learning.runs(session_id=s.id) for s in store.sessions.all(*LIVES))
+    # Conditions of an experiment share runs.
+    return (*store.learning.runs(), *{run.id: run for runs in robots for run in runs}.values())
 
 
 def history_of(store: Store, row_id: int) -> list[tuple[StoredStep, TrialSpec]]:
@@ -46,6 +55,7 @@ def listed_rows(
         wanted: which rows.
         region: only those in which the attractor was nearest to this part of the tool.
     """
+    _require_kept(runs, Keep.TRIALS)
     specs = {run.id: run.spec for run in runs}
     found = store.selections.rows(_unless_by_region(wanted, region))
     named = (
@@ -87,6 +97,7 @@ def taken_out(
     def write_counted(columns: Sequence[Column], rows: Iterable[tuple[Any, ...]]) -> Made:
         return write(columns, counted(rows))
 
+    _require_kept(runs, *_NOT_ENOUGH[what])
     if what != "rows":
         made = store.selections.extract(what, wanted, write_counted)
         return made, count
@@ -98,6 +109,16 @@ def taken_out(
 
     made = store.selections.extract(what, _unless_by_region(wanted, region), write_rows)
     return made, count
+
+
+def _require_kept(runs: Iterable[LearningRunInfo], *little: Keep) -> None:
+    """Refuse to give as whole what was not kept of a run."""
+    for run in runs:
+        if run.kept in little:
+            raise UsageError(
+                f"run {run.id}: only its {run.kept} were kept (--keep {run.kept}); choose others "
+                "with --run"
+            )
 
 
 def _with_region(

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from affcli.store.copying import backup
     from affcli.store.environment import Fact, State, environment_facts
     from affcli.store.health import DatabaseInfo, Finding, check, database_info
+    from affcli.store.merging import Merged, merge
     from affcli.store.opening import Store, open_store, upgrade
     from affcli.store.packing import PackedRobot, pack_robot
     from affcli.store.query import QueryResult, run_sql
@@ -20,6 +21,7 @@ __all__ = [
     "DatabaseInfo",
     "Fact",
     "Finding",
+    "Merged",
     "PackedRobot",
     "QueryResult",
     "State",
@@ -28,6 +30,7 @@ __all__ = [
     "check",
     "database_info",
     "environment_facts",
+    "merge",
     "open_store",
     "pack_robot",
     "run_sql",
@@ -40,6 +43,7 @@ _HOMES = {
     "waiting": ("tell_of_waiting",),
     "environment": ("Fact", "State", "environment_facts"),
     "health": ("DatabaseInfo", "Finding", "check", "database_info"),
+    "merging": ("Merged", "merge"),
     "opening": ("Store", "open_store", "upgrade"),
     "packing": ("PackedRobot", "pack_robot"),
     "query": ("QueryResult", "run_sql"),

@@ -24,12 +24,19 @@ _USE = (
 )
 COLUMNS: dict[str, tuple[str, ...]] = {
     "tool": ("key", "name", "definition"),
-    "session": ("key", "kind", "seed", "robots", *_PARTS, "planner", "task_set"),
+    "experiment": (
+        *("name", "question", "definition", "key", "versions", "status"),
+        *("started_at", "finished_at"),
+    ),
+    "session": (
+        *("key", "kind", "seed", "robots", *_PARTS, "planner", "task_set"),
+        *("experiment_id", "condition"),
+    ),
     "learning_run": (
         *("session_id", "key", "tool", "tool_key", "seed", "robot", "hours", "behaviors_limit"),
         *_PARTS,
         *("behaviors", "rows", "resets", "redraws", "robot_seconds", "checkpoint", "calibration"),
-        "note",
+        *("note", "kept"),
     ),
     "behavior": (
         *("learning_run_id", "step", "clock", "exploratory_behavior", "exploratory_params"),
@@ -73,5 +80,5 @@ JSON_COLUMNS = frozenset(
     }
 )
 """Columns that hold JSON."""
-NUMBERED = ("session", "learning_run", "affordance", "trial", "verification")
+NUMBERED = ("experiment", "session", "learning_run", "affordance", "trial", "verification")
 """The tables whose rows have an `id`."""

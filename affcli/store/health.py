@@ -37,17 +37,19 @@ class Finding:
 
 CHECKS = {
     "a learning run has as many behaviors as it says": """
-        SELECT 'run ' || id FROM learning_run r WHERE behaviors
+        SELECT 'run ' || id FROM learning_run r WHERE kept = 'all' AND behaviors
         <> (SELECT count(*) FROM behavior WHERE learning_run_id = r.id)""",
     "a learning run has as many rows as it says": """
-        SELECT 'run ' || id FROM learning_run r WHERE rows
+        SELECT 'run ' || id FROM learning_run r WHERE kept <> 'trials' AND rows
         <> (SELECT count(*) FROM affordance WHERE learning_run_id = r.id)""",
     "each row comes from a behavior that moved the attractor": """
-        SELECT 'affordance ' || a.id FROM affordance a LEFT JOIN behavior b
+        SELECT 'affordance ' || a.id FROM affordance a JOIN learning_run r
+        ON r.id = a.learning_run_id AND r.kept = 'all' LEFT JOIN behavior b
         ON b.learning_run_id = a.learning_run_id AND b.step = a.step
         WHERE coalesce(b.change_detected, 0) <> 1""",
     "a trial has as many steps as it says": """
-        SELECT 'trial ' || id FROM trial t WHERE steps IS NOT NULL AND steps
+        SELECT 'trial ' || t.id FROM trial t JOIN learning_run r ON r.id = t.learning_run_id
+        AND r.kept <> 'trials' WHERE t.steps IS NOT NULL AND t.steps
         <> (SELECT count(*) FROM step WHERE trial_id = t.id)""",
     "the steps of a trial are numbered without a gap": """
         SELECT 'trial ' || trial_id FROM step GROUP BY trial_id HAVING max(number) <> count(*)""",
@@ -125,8 +127,8 @@ class DatabaseInfo:
         code_revision: the schema this affcli reads and writes.
         journal_mode: ``delete`` or ``wal``.
         sqlite_version: of the linked library.
-        counts: records by what they are, empty when the schema is another: sessions, learning
-            runs, behaviors, affordances, trials, steps, verifications, tries of these.
+        counts: records by what they are, empty when the schema is another: experiments, sessions,
+            learning runs, behaviors, affordances, trials, steps, verifications, tries of these.
     """
 
     path: Path
@@ -139,6 +141,7 @@ class DatabaseInfo:
 
 
 COUNTS = {
+    "experiments": "SELECT count(*) FROM experiment",
     "sessions": "SELECT count(*) FROM session",
     "learning runs": "SELECT count(*) FROM learning_run",
     "behaviors": "SELECT coalesce(sum(behaviors), 0) FROM learning_run",

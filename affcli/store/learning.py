@@ -17,7 +17,8 @@ from affcli.errors import DatabaseError, UsageError, one_line
 from affcli.store import reading, rows
 from affcli.store.comparing import by_number, differences
 from affcli.store.connection import Database, insert_many, insert_one, mappings, numbered
-from affcli.store.tables import affordance, behavior, learning_run, tool
+from affcli.store.keeping import require_kept
+from affcli.store.tables import affordance, behavior, learning_run, tool, trial
 
 COUNTERS = frozenset({"times_used", "times_successful"})
 """Trials change them after a row is made."""
@@ -160,10 +161,11 @@ class Learning:
 
         Args:
             tool: only those of this tool.
-            session_id: those of this reproduction; None for those that stand for themselves.
+            session_id: those that the robots of this session used, also when another condition of
+                their experiment learned them; None for those that stand for themselves.
             status: only ``running`` or only ``done`` ones.
         """
-        wanted = selected_runs().where(learning_run.c.session_id.is_(session_id))
+        wanted = selected_runs().where(used_in(session_id))
         for column, value in (("tool", tool), ("status", status)):
             if value is not None:
                 wanted = wanted.where(learning_run.c[column] == value)
@@ -187,6 +189,7 @@ class Learning:
             The table; and the id of each row in the store by its learning step.
         """
         learned = self.run(run_id).spec
+        require_kept(self.database, "rows", learning_run.c.id == run_id)
         found = self.database.mappings(sa.select(affordance).filter_by(learning_run_id=run_id))
         fresh = dict.fromkeys(COUNTERS, 1) if as_learned else {}
         place, counted = (
@@ -208,6 +211,7 @@ class Learning:
 
     def rows(self, run_id: int) -> tuple[StoredRow, ...]:
         """Return the rows of a learning run, oldest first."""
+        require_kept(self.database, "rows", learning_run.c.id == run_id)
         wanted = sa.select(affordance).filter_by(learning_run_id=run_id)
         return tuple(
             map(reading.stored_row, self.database.mappings(wanted.order_by(affordance.c.step)))
@@ -222,6 +226,7 @@ class Learning:
             DatabaseError: behaviors that made rows are missing.
         """
         b = behavior.c
+        require_kept(self.database, "behaviors", learning_run.c.id == run_id)
         wanted = sa.select(behavior).where(b.learning_run_id == run_id, b.change_detected == 1)
         made = self.database.mappings(wanted)
         if len(made) < self.run(run_id).rows:
@@ -243,6 +248,7 @@ class Learning:
                 attractor truly was.
         """
         info, b = self.run(run_id), behavior.c
+        require_kept(self.database, "behaviors", learning_run.c.id == run_id)
         wanted = sa.select(behavior).where(
             b.learning_run_id == run_id, b.step.in_((number - 1, number))
         )
@@ -287,6 +293,7 @@ class Learning:
         """
         if not steps:
             return ()
+        require_kept(self.database, "behaviors", learning_run.c.id == run_id)
         first, last = steps[0][0].step, steps[-1][0].step
         done = {record.step: rows.behavior_row(run_id, record, truth) for record, truth in steps}
         made = {
@@ -309,6 +316,15 @@ class Learning:
             *differences("behavior", kept, done),
             *(d for d in differences("affordance", kept_rows, made) if d.column not in COUNTERS),
         )
+
+
+def used_in(session_id: int | None) -> sa.ColumnElement[bool]:
+    """Tell whether a learning run was used by the robots of a session, or stands for itself."""
+    if session_id is None:
+        return learning_run.c.session_id.is_(None)
+    return learning_run.c.id.in_(
+        sa.select(trial.c.learning_run_id).where(trial.c.session_id == session_id)
+    )
 
 
 def insert_run(connection: sa.Connection, row: Mapping[str, Any], spec: LearningSpec) -> int:

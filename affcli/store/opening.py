@@ -20,6 +20,7 @@ from affcli.store.database_file import (
     require_something,
     stored_revision,
 )
+from affcli.store.experiments import Experiments
 from affcli.store.faults import faults_named, result_code
 from affcli.store.journal import set_journal_mode
 from affcli.store.learning import Learning
@@ -47,7 +48,9 @@ class Store:
     def __init__(self, database: Database) -> None:
         self.database = database
         self.sessions = Sessions(database)
-        """Sessions, and the robots of reproductions."""
+        """Sessions, and the robots of reproductions and experiments."""
+        self.experiments = Experiments(database)
+        """Experiments, with the sessions of their conditions."""
         self.learning = Learning(database)
         """Learning runs, with the behaviors and the rows of each."""
         self.runs = Runs(database)

@@ -7,7 +7,7 @@ together, as rows a tenth of it; and the worker does the mapping. Needs no SQLAl
 from dataclasses import dataclass
 from typing import Any
 
-from affcli.core.specs import LearningSpec, RobotRecord, TrialRecord
+from affcli.core.specs import Keep, LearningSpec, RobotRecord, TrialRecord
 from affcli.core.tool import Tool
 from affcli.store.rows import (
     Row,
@@ -38,22 +38,24 @@ class PackedTrial:
 
 @dataclass(frozen=True, slots=True)
 class PackedRun:
-    """One finished learning run as rows, with the trials of its tool.
+    """One finished learning run as rows, with the trials that start from its table.
 
     Args:
         spec: what the run is a function of.
-        behaviors, affordances: rows without the run's id.
-        resets, redraws, robot_seconds: of the whole run.
-        trials: those that start from its table.
+        calibration: of the robot's camera, as JSON; None without one.
+        behaviors, affordances: rows without the run's id; none where they are not kept.
+        sums: columns of the whole run.
+        kept: how much of it is kept.
+        trials: those that start from its table, by the condition that they are part of.
     """
 
     spec: LearningSpec
+    calibration: str | None
     behaviors: tuple[Row, ...]
     affordances: tuple[Row, ...]
-    resets: int
-    redraws: int
-    robot_seconds: float
-    trials: tuple[PackedTrial, ...]
+    sums: dict[str, float]
+    kept: Keep
+    trials: dict[int, list[PackedTrial]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,39 +64,50 @@ class PackedRobot:
 
     Args:
         robot: its number.
-        runs: what it learned and how it was tested, by tool.
-        calibration: of its camera, as JSON; None without one.
+        runs: what it learned, and how it was tested with it.
     """
 
     robot: int
     runs: tuple[PackedRun, ...]
-    calibration: str | None
 
 
-def pack_robot(record: RobotRecord) -> PackedRobot:
-    """Return the life of a robot as rows, ready to be sent to the process that saves it."""
+def pack_robot(record: RobotRecord, keep: Keep = Keep.ALL) -> PackedRobot:
+    """Return what is kept of the life of a robot as rows, ready to be sent to who saves it."""
     runs = []
-    for spec, steps, seconds in record.learned:
+    for number, (spec, steps, seconds) in enumerate(record.learned):
         rows = [r.affordance for r, _ in steps if r.affordance is not None]
+        trials: dict[int, list[PackedTrial]] = {}
+        for condition, run, trial in record.tested:
+            if run == number:
+                trials.setdefault(condition, []).append(pack_trial(trial, keep))
         runs.append(
             PackedRun(
                 spec=spec,
-                behaviors=tuple(behavior_row(0, *step)[1:] for step in steps),
-                affordances=tuple(affordance_row(0, spec.tool, row)[1:] for row in rows),
-                resets=sum(r.resets for r, _ in steps),
-                redraws=sum(r.redraws for r, _ in steps),
-                robot_seconds=seconds,
-                trials=tuple(pack_trial(t) for t in record.trials if t.spec.tool == spec.tool),
+                calibration=record.calibrations[number],
+                behaviors=tuple(behavior_row(0, *step)[1:] for step in steps if keep is Keep.ALL),
+                affordances=tuple(
+                    affordance_row(0, spec.tool, row)[1:] for row in rows if keep is not Keep.TRIALS
+                ),
+                sums={
+                    "behaviors": len(steps),
+                    "rows": len(rows),
+                    "resets": sum(r.resets for r, _ in steps),
+                    "redraws": sum(r.redraws for r, _ in steps),
+                    "robot_seconds": seconds,
+                },
+                kept=keep,
+                trials=trials,
             )
         )
-    return PackedRobot(record.robot, tuple(runs), record.calibration)
+    return PackedRobot(record.robot, tuple(runs))
 
 
-def pack_trial(trial: TrialRecord) -> PackedTrial:
-    """Return a trial as rows."""
+def pack_trial(trial: TrialRecord, keep: Keep = Keep.ALL) -> PackedTrial:
+    """Return what is kept of a trial as rows."""
+    steps = trial.steps if keep is not Keep.TRIALS else ()
     return PackedTrial(
         held=trial.spec.held,
         row=trial_row(trial.spec, trial.calibration) | trial_end_row(trial.end),
-        steps=tuple(step_row(0, 0, *step)[2:] for step in trial.steps),
-        tried=tuple(step.record.row.step for step in trial.steps),
+        steps=tuple(step_row(0, 0, *step)[2:] for step in steps),
+        tried=tuple(step.record.row.step for step in steps),
     )

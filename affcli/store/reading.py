@@ -15,6 +15,7 @@ from affcli.core.identity import Component
 from affcli.core.limits import LONGEST_HOURS, MOST_BEHAVIORS, MOST_ROBOTS
 from affcli.core.observation import Movement, Observation, SensorKind
 from affcli.core.records import (
+    ExperimentInfo,
     LearningRunInfo,
     SessionInfo,
     StoredReplication,
@@ -22,7 +23,7 @@ from affcli.core.records import (
     StoredStep,
     TrialInfo,
 )
-from affcli.core.specs import Counters, LearningSpec, Protocol, SessionSpec, TrialSpec
+from affcli.core.specs import Counters, Keep, LearningSpec, Protocol, SessionSpec, TrialSpec
 from affcli.core.task import GoalRegion, Task
 from affcli.core.tool import Tool, tool_from_canonical, unknown_tool
 from affcli.core.trial import Outcome
@@ -184,6 +185,7 @@ def learning_run(row: Columns) -> LearningRunInfo:
             spec=learning_spec(row),
             versions=dict(json.loads(row["versions"])),
             checkpoint=None if row["checkpoint"] is None else dict(json.loads(row["checkpoint"])),
+            kept=Keep(row["kept"]),
             **{name: row[name] for name in names},
         )
 
@@ -199,7 +201,19 @@ def session(row: Columns) -> SessionInfo:
             **_parts(row),
         )
         versions = dict(json.loads(row["versions"]))
-        return SessionInfo(row["id"], spec, versions, row["status"])
+        own = (row[name] for name in ("status", "experiment_id", "condition"))
+        return SessionInfo(row["id"], spec, versions, *own)
+
+
+def experiment(row: Columns, sessions: Iterable[Columns]) -> ExperimentInfo:
+    """Return an experiment, from its row and those of its sessions in the order of conditions."""
+    with reading_what_was_written(f"experiment {row['id']}"):
+        return ExperimentInfo(
+            definition=dict(json.loads(row["definition"])),
+            versions=dict(json.loads(row["versions"])),
+            conditions=tuple((one["condition"], one["id"]) for one in sessions),
+            **{name: row[name] for name in ("id", "name", "question", "key", "status")},
+        )
 
 
 def trial(row: Columns, learned: Mapping[int, LearningSpec]) -> TrialInfo:

@@ -18,6 +18,8 @@ from affcli.core.results import (
 from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome, is_counted
 from affcli.store.connection import Database, tuples
+from affcli.store.keeping import require_kept
+from affcli.store.learning import used_in
 from affcli.store.reading import behavior_call, reading_what_was_written
 from affcli.store.tables import (
     affordance,
@@ -41,6 +43,7 @@ class Results:
 
     def behavior_groups(self, run_id: int) -> tuple[BehaviorGroup, ...]:
         """Return what each behavior and parameter gave in a learning run, by name and parameter."""
+        require_kept(self.database, "behaviors", learning_run.c.id == run_id)
         b, a = behavior.c, affordance.c
         made_here = sa.and_(a.learning_run_id == b.learning_run_id, a.step == b.step)
         wanted = (
@@ -141,6 +144,7 @@ class Results:
             How many tries were of rows whose affordance was truly lost; and how many rows fell to
             a probability of 1/2 or less in some trial.
         """
+        require_kept(self.database, "steps", used_in(session_id))
         s, t = step.c, trial.c
         excluded = sa.case((s.died == 1, s.affordance_id)).distinct()
         wanted = (
@@ -184,13 +188,14 @@ class Results:
 
         Args:
             seconds: length of an interval.
-            session_id: the runs of this reproduction; None for those that are of none.
+            session_id: the runs that its robots used; None for those that stand for themselves.
         """
+        require_kept(self.database, "behaviors", used_in(session_id))
         b, run = behavior.c, learning_run.c
         number = sa.cast(b.clock / seconds, sa.Integer)
         wanted = (
             sa.select(b.learning_run_id, number, sa.func.count(), sa.func.sum(b.change_detected))
-            .where(b.learning_run_id.in_(sa.select(run.id).where(run.session_id.is_(session_id))))
+            .where(b.learning_run_id.in_(sa.select(run.id).where(used_in(session_id))))
             .group_by(b.learning_run_id, number)
             .order_by(b.learning_run_id, number)
         )
@@ -214,6 +219,7 @@ class Results:
             side: x of a place on the side (in, tool frame); 0 for none, which no row lies on.
             by_robot: sum over the trials of each robot; else each trial stands for itself.
         """
+        require_kept(self.database, "steps", used_in(session_id))
         t, s, a = trial.c, step.c, affordance.c
         these = sa.and_(
             t.session_id == session_id,

@@ -1,4 +1,4 @@
-"""Sessions: commands that produced trials, and reproductions with the lives of their robots."""
+"""Sessions: commands that produced trials; those of experiments, with the lives of their robots."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -7,21 +7,18 @@ from typing import Any
 import sqlalchemy as sa
 
 from affcli.core.records import SessionInfo
-from affcli.core.specs import RobotRecord, SessionSpec
+from affcli.core.specs import REPRODUCE, RobotRecord, SessionSpec
 from affcli.store import reading, rows
 from affcli.store.connection import Database, insert_many, insert_one
 from affcli.store.learning import insert_run
 from affcli.store.packing import PackedRobot, pack_robot
-from affcli.store.tables import affordance, behavior, learning_run, session
+from affcli.store.tables import affordance, behavior, session, trial
 from affcli.store.trials import insert_trials
-
-REPRODUCE = "reproduce"
-"""The kind of a session that is its robots' whole lives."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sessions:
-    """Sessions, and the robots of reproductions."""
+    """Sessions, and the robots of reproductions and experiments."""
 
     database: Database
 
@@ -40,11 +37,11 @@ class Sessions:
                     return int(found.id)
             return insert_one(connection, session, rows.session_row(spec, versions, now))
 
-    def all(self, kind: str | None = None) -> tuple[SessionInfo, ...]:
-        """Return the sessions, all or of one kind, oldest first."""
+    def all(self, *kinds: str) -> tuple[SessionInfo, ...]:
+        """Return the sessions, all or of some kinds, oldest first."""
         wanted = sa.select(session).order_by(session.c.id)
-        if kind is not None:
-            wanted = wanted.where(session.c.kind == kind)
+        if kinds:
+            wanted = wanted.where(session.c.kind.in_(kinds))
         return tuple(map(reading.session, self.database.mappings(wanted)))
 
     def finish(self, session_id: int, now: str) -> None:
@@ -57,53 +54,51 @@ class Sessions:
             )
 
     def saved_robots(self, session_id: int) -> frozenset[int]:
-        """Return the numbers of the robots that a reproduction has saved already."""
-        wanted = sa.select(learning_run.c.robot).distinct().where(_part_of(session_id))
+        """Return the numbers of the robots that a session has saved already."""
+        wanted = sa.select(trial.c.robot).distinct().where(trial.c.session_id == session_id)
         with self.database.reading() as connection:
             return frozenset(connection.scalars(wanted))
 
     def save_robot(
         self,
-        session_id: int,
+        sessions: Mapping[int, Mapping[str, str]],
         robot: RobotRecord | PackedRobot,
-        versions: Mapping[str, str],
         now: str,
     ) -> bool:
-        """Save the whole life of one robot of a reproduction in one transaction.
+        """Save the whole life of one robot in one transaction.
+
+        A learning run that several conditions used is kept once, with the first of them.
 
         Args:
-            session_id: the reproduction.
+            sessions: those of the conditions, in their order, each with what it was made with.
             robot: its learning runs and its trials; packed when another process lived them.
-            versions: what it was made with.
             now: ISO text, UTC.
 
         Returns:
             False when this robot was saved before; nothing is written then.
         """
         packed = robot if isinstance(robot, PackedRobot) else pack_robot(robot)
+        ids = tuple(sessions)
         with self.database.writing() as connection:
-            is_there = sa.select(learning_run.c.id).where(
-                _part_of(session_id), learning_run.c.robot == packed.robot
-            )
+            is_there = sa.select(trial.c.id).filter_by(session_id=ids[0], robot=packed.robot)
             if connection.execute(is_there.limit(1)).first() is not None:
                 return False
             for run in packed.runs:
+                owner = ids[min(run.trials)]
                 row = {
-                    **rows.learning_run_row(run.spec, versions, now, session_id),
+                    **rows.learning_run_row(run.spec, sessions[owner], now, owner),
                     "status": "done",
                     "finished_at": now,
-                    "calibration": packed.calibration,
-                    "behaviors": len(run.behaviors),
-                    "rows": len(run.affordances),
-                    "resets": run.resets,
-                    "redraws": run.redraws,
-                    "robot_seconds": run.robot_seconds,
+                    "calibration": run.calibration,
+                    "kept": run.kept.value,
+                    **run.sums,
                 }
                 run_id = insert_run(connection, row, run.spec)
                 insert_many(connection, behavior, [(run_id, *one) for one in run.behaviors])
                 insert_many(connection, affordance, [(run_id, *one) for one in run.affordances])
-                ids = _affordance_ids(connection, run_id)
-                insert_trials(connection, session_id, run_id, run.trials, ids)
+                rows_of = _affordance_ids(connection, run_id)
+                for condition, trials in run.trials.items():
+                    insert_trials(connection, ids[condition], run_id, trials, rows_of)
             return True
 
 
@@ -111,11 +106,6 @@ def _affordance_ids(connection: sa.Connection, run_id: int) -> dict[int, int]:
     """Return the ids of a run's affordances by learning step."""
     columns = sa.select(affordance.c.step, affordance.c.id).filter_by(learning_run_id=run_id)
     return {row.step: row.id for row in connection.execute(columns)}
-
-
-def _part_of(session_id: int) -> sa.ColumnElement[bool]:
-    """Tell whether a learning run is part of a reproduction, as the unique index spells it."""
-    return sa.func.coalesce(learning_run.c.session_id, 0) == session_id
 
 
 def _like(spec: SessionSpec) -> sa.Select[Any]:

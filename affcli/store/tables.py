@@ -9,6 +9,7 @@ TABLES = {
     for name, columns in COLUMNS.items()
 }
 tool = TABLES["tool"]
+experiment = TABLES["experiment"]
 session = TABLES["session"]
 learning_run = TABLES["learning_run"]
 behavior = TABLES["behavior"]

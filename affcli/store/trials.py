@@ -15,6 +15,7 @@ from affcli.errors import UsageError
 from affcli.store import reading, rows
 from affcli.store.comparing import by_number, differences
 from affcli.store.connection import Database, insert_many, insert_one, mappings, numbered
+from affcli.store.keeping import require_kept, run_of
 from affcli.store.learning import count_use, insert_tools, selected_runs
 from affcli.store.packing import PackedTrial, pack_trial
 from affcli.store.tables import (
@@ -96,6 +97,7 @@ class Trials:
 
     def steps(self, trial_id: int) -> tuple[StoredStep, ...]:
         """Return the steps of a trial with the rows they tried."""
+        require_kept(self.database, "steps", run_of(trial_id))
         return self._steps(step.c.trial_id == trial_id, f"trial {trial_id}")
 
     def steps_of_row(self, row_id: int) -> tuple[StoredStep, ...]:
@@ -234,6 +236,7 @@ class Trials:
             end: how it ended; None when that is not to be compared.
             affordance_ids: of each row of the table by its learning step.
         """
+        require_kept(self.database, "steps", run_of(trial_id))
         again = {
             one.record.number: rows.step_row(trial_id, affordance_ids[one.record.row.step], *one)
             for one in steps

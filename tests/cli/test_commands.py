@@ -98,6 +98,10 @@ def test_a_command_imports_no_other_command() -> None:
 
 
 def test_the_commands_that_go_on_when_given_again() -> None:
-    assert [name for name in program.commands if goes_on(name)] == ["learn", "reproduce"]
+    assert [name for name in program.commands if goes_on(name)] == [
+        "learn",
+        "reproduce",
+        "experiment",
+    ]
     assert not goes_on("")
     assert not goes_on("figure")

@@ -64,7 +64,7 @@ def test_too_little_memory_is_one_line(
 ) -> None:
     def ask(*_: object, **__: object) -> None:
         try:
-            raise MemoryError
+            raise MemoryError  # noqa: TRY301
         except MemoryError:
             raise error  # noqa: B904  # as libraries do while they close what is open
 

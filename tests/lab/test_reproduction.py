@@ -106,7 +106,7 @@ def test_the_store_is_the_same_for_any_number_of_workers(
     store: Store, another_store: Store
 ) -> None:
     alone = list(reproduce(store, WHAT, 3, 1, now))
-    assert alone == [alone[0], 1, 2, 3]
+    assert alone == [alone[0], 0, 1, 2, 3]
     assert list(reproduce(another_store, WHAT, 3, 2, now)) == alone
     assert contents(store) == contents(another_store)
     assert store.sessions.saved_robots(alone[0]) == {0, 1, 2}
@@ -118,10 +118,10 @@ def test_an_interrupted_reproduction_goes_on_with_the_robots_that_are_missing(
     store: Store, another_store: Store
 ) -> None:
     whole = list(reproduce(another_store, WHAT, 2, 1, now))
-    taken(reproduce(store, WHAT, 2, 1, now), 2)
+    taken(reproduce(store, WHAT, 2, 1, now), 3)
     assert store.sessions.saved_robots(whole[0]) == {0}
     (half,) = store.sessions.all("reproduce")
-    assert list(reproduce(store, reproduced_again(half.spec), 2, 1, now)) == [whole[0], 2]
+    assert list(reproduce(store, reproduced_again(half.spec), 2, 1, now)) == [whole[0], 1, 2]
     assert contents(store) == contents(another_store)
-    assert list(reproduce(store, WHAT, 2, 1, now)) == [whole[0]]
+    assert list(reproduce(store, WHAT, 2, 1, now)) == [whole[0], 2]
     assert contents(store) == contents(another_store)

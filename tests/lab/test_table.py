@@ -112,7 +112,7 @@ def test_every_run_is_there_also_unfinished_and_of_robots(
 ) -> None:
     unfinished = store.learning.begin(spec_of("l-hook"), VERSIONS, NOW)
     session = begun(store, "reproduce")
-    store.sessions.save_robot(session, robot_record(0), VERSIONS, NOW)
+    store.sessions.save_robot({session: VERSIONS}, robot_record(0), NOW)
     found = every_run(store)
     assert [run.id for run in found] == [*(run.id for run in runs), unfinished.id, 6, 7]
     assert [run.session_id for run in found] == [None] * 5 + [session] * 2

@@ -31,7 +31,7 @@ def test_a_run_goes_from_corner_to_corner_when_it_is_the_highest() -> None:
 
 
 def test_what_all_robots_did_lies_around_it_on_the_same_axes() -> None:
-    band = Band([0.0, 4.0], [0.0, 2.0], [0.0, 12.0])
+    band = Band([0.0, 4.0], [0.0, 2.0], [0.0, 12.0], [0.0, 3.0], [0.0, 6.0])
     bands = {"t-hook": ToolCurves("t-hook", 9, [0.0, 10.0], band, band)}
     (chart,) = charts([ONE], {RUN.id: CURVE}, bands)
     assert points(chart["lines"][0][2])[-1] == (WIDTH, HEIGHT / 2)

@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 
+from affcli.core.specs import TrialRecord
 from affcli.core.trial import Outcome
 from affcli.store import Store
 from tests.store.records import NOW, VERSIONS, robot_record, session_spec
@@ -32,21 +33,17 @@ def stored_conditions(store: Store, robots: int = 8, conditions: int = 3) -> lis
         for robot in range(robots + condition):
             life = robot_record(robot, behaviors=60, seed=7)
             learned = tuple((run, steps, 5.25 * len(steps)) for run, steps, _ in life.learned)
-            trials = [
-                replace(
-                    trial,
-                    end=replace(
-                        trial.end,
-                        outcome=Outcome.SOLVED
-                        if solved(condition, robot, trial.spec.tool, trial.spec.start)
-                        else Outcome.STEP_LIMIT,
-                    ),
-                )
-                for trial in life.trials
-            ]
-            assert store.sessions.save_robot(
-                session, replace(life, learned=learned, trials=tuple(trials)), VERSIONS, NOW
+            tested = tuple(
+                replace(one, trial=_ended(one.trial, condition, robot)) for one in life.tested
             )
+            lived = replace(life, learned=learned, tested=tested)
+            assert store.sessions.save_robot({session: VERSIONS}, lived, NOW)
         store.sessions.finish(session, NOW)
         sessions.append(session)
     return sessions
+
+
+def _ended(trial: TrialRecord, condition: int, robot: int) -> TrialRecord:
+    done = solved(condition, robot, trial.spec.tool, trial.spec.start)
+    outcome = Outcome.SOLVED if done else Outcome.STEP_LIMIT
+    return replace(trial, end=replace(trial.end, outcome=outcome))

@@ -20,6 +20,7 @@ from affcli.core.specs import (
     Protocol,
     RobotRecord,
     SessionSpec,
+    Tested,
     TrialRecord,
     TrialSpec,
     VerificationSpec,
@@ -217,7 +218,8 @@ def robot_record(robot: int, *, behaviors: int = 6, seed: int = 0) -> RobotRecor
     failed = trial_step(rows[0], 1, seen=(0.0, 0.0), lost=True)
     again = trial_step(rows[1], 2, lost=False)
     trials.append(TrialRecord(broken, (failed, again), TrialEnd(Outcome.SOLVED, 2, 13.0)))
-    return RobotRecord(robot, tuple(runs), tuple(trials))
+    tested = (Tested(0, int(trial.spec.tool == "t-hook"), trial) for trial in trials)
+    return RobotRecord(robot, tuple(runs), tuple(tested), (None, None))
 
 
 def all_steps(trials: Sequence[TrialRecord]) -> list[TrialStep]:

@@ -135,7 +135,7 @@ def test_robots_are_summed_each_with_its_own_table(store: Store) -> None:
     session = begun(store, "reproduce", robots=3)
     for robot in range(3):
         life = robot_record(robot, behaviors=6 + 3 * robot)
-        assert store.sessions.save_robot(session, life, VERSIONS, NOW)
+        assert store.sessions.save_robot({session: VERSIONS}, life, NOW)
     groups = store.results.trial_groups(session, "t-hook", "l-hook", RIGHT, by_robot=True)
     assert groups == tuple(
         TrialGroup(

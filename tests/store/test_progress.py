@@ -39,7 +39,7 @@ def test_of_a_reproduction_every_robot_is_counted_and_of_a_run_only_that(store: 
     alone = learned(store)
     session = begun(store, "reproduce", robots=2)
     for robot in (0, 1):
-        assert store.sessions.save_robot(session, robot_record(robot), VERSIONS, NOW)
+        assert store.sessions.save_robot({session: VERSIONS}, robot_record(robot), NOW)
     runs = store.learning.runs(session_id=session)
     whole = store.results.learning_intervals(1e6, session)
     assert whole == {run.id: [LearningInterval(run.id, 0, 6, 2)] for run in runs}

@@ -128,7 +128,7 @@ def lives(store: Store) -> Store:
     """A store with the lives of two robots, and a run of a person's own with a trial."""
     session = begun(store, "reproduce", robots=2)
     for robot in (0, 1):
-        store.sessions.save_robot(session, robot_record(robot), VERSIONS, NOW)
+        store.sessions.save_robot({session: VERSIONS}, robot_record(robot), NOW)
     run = learned(store)
     table, ids = store.learning.table(run.id)
     solving = begun(store)

@@ -317,9 +317,9 @@ def begin_reproducing(store: Store, robots: int = 2) -> int:
 def test_a_robot_is_saved_once_and_whole(store: Store) -> None:
     session = begin_reproducing(store)
     assert store.sessions.saved_robots(session) == frozenset()
-    assert store.sessions.save_robot(session, robot_record(1), VERSIONS, NOW)
-    assert not store.sessions.save_robot(session, robot_record(1), VERSIONS, LATER)
-    assert store.sessions.save_robot(session, robot_record(0), VERSIONS, NOW)
+    assert store.sessions.save_robot({session: VERSIONS}, robot_record(1), NOW)
+    assert not store.sessions.save_robot({session: VERSIONS}, robot_record(1), LATER)
+    assert store.sessions.save_robot({session: VERSIONS}, robot_record(0), NOW)
     assert store.sessions.saved_robots(session) == {0, 1}
     runs = store.learning.runs(session_id=session)
     assert [(r.spec.tool, r.spec.robot, r.behaviors, r.rows) for r in runs] == [
@@ -338,8 +338,8 @@ def test_a_robot_is_saved_once_and_whole(store: Store) -> None:
 
 def test_a_robot_of_another_session_is_another_robot(store: Store) -> None:
     first, second = begin_reproducing(store, 2), begin_reproducing(store, 3)
-    assert store.sessions.save_robot(first, robot_record(0), VERSIONS, NOW)
-    assert store.sessions.save_robot(second, robot_record(0), VERSIONS, NOW)
+    assert store.sessions.save_robot({first: VERSIONS}, robot_record(0), NOW)
+    assert store.sessions.save_robot({second: VERSIONS}, robot_record(0), NOW)
     alone = learned(store, spec=learning_spec("stick", behaviors=6))
     assert alone.session_id is None
 
@@ -352,22 +352,22 @@ def everything(store: Store) -> list[tuple[tuple[Cell, ...], ...]]:
 
 def test_a_packed_robot_is_saved_as_the_robot_itself(store: Store, empty_database: object) -> None:
     session = begin_reproducing(store)
-    store.sessions.save_robot(session, robot_record(0), VERSIONS, NOW)
+    store.sessions.save_robot({session: VERSIONS}, robot_record(0), NOW)
     plain = everything(store)
     with store.database.writing() as connection:
         for table in ("step", "trial", "affordance", "behavior", "learning_run"):
             connection.exec_driver_sql(f"DELETE FROM {table}")
         connection.exec_driver_sql("DELETE FROM sqlite_sequence WHERE name <> 'session'")
-    store.sessions.save_robot(session, pack_robot(robot_record(0)), VERSIONS, NOW)
+    store.sessions.save_robot({session: VERSIONS}, pack_robot(robot_record(0)), NOW)
     assert everything(store) == plain
 
 
 def test_a_robot_is_saved_whole_or_not_at_all(store: Store) -> None:
     session = begin_reproducing(store)
     record = robot_record(0)
-    torn = replace(record, trials=(*record.trials, record.trials[-1]))
+    torn = replace(record, tested=(*record.tested, record.tested[-1]))
     with pytest.raises(Exception, match="UNIQUE constraint failed"):
-        store.sessions.save_robot(session, torn, VERSIONS, NOW)
+        store.sessions.save_robot({session: VERSIONS}, torn, NOW)
     assert store.sessions.saved_robots(session) == frozenset()
     assert [len(rows) for rows in everything(store)] == [1, 0, 0, 0, 0, 0]
 
@@ -375,7 +375,7 @@ def test_a_robot_is_saved_whole_or_not_at_all(store: Store) -> None:
 def test_sums_for_reports(store: Store) -> None:
     session = begin_reproducing(store)
     for robot in range(2):
-        store.sessions.save_robot(session, robot_record(robot), VERSIONS, NOW)
+        store.sessions.save_robot({session: VERSIONS}, robot_record(robot), NOW)
     whole, broken = Protocol.EXTENSION_OF_REACH, Protocol.TOOL_ADAPTATION
     assert [
         (c.robot, c.protocol, c.tool, c.shape, c.goal, c.trials, c.solved)

@@ -11,7 +11,7 @@ import pytest
 
 from affcli.errors import DatabaseError
 from affcli.store import check, database_info, lock_retry, open_store, run_sql, tell_of_waiting
-from affcli.store.faults import lock_holder
+from affcli.store.waiting import lock_holder
 
 PATIENCE = 0.6
 """Seconds, of which SQLite itself waits for some before it is asked again."""

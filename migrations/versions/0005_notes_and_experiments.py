@@ -1,8 +1,12 @@
-"""A run may have a note; no id is given twice, also after what had it was deleted.
+"""Experiments: several conditions, each a session, whose robots share what they learned alike.
+
+A run may have a note; no id is given twice, also after what had it was deleted.
 
 A verification remembers the latest trial before it, and a replay goes by the order of ids: a new
 trial with the id of a deleted one would come before verifications that it came after.
 """
+
+import sqlite3
 
 from alembic import op
 
@@ -14,6 +18,20 @@ depends_on = None
 NUMBERED = ("session", "learning_run", "affordance", "trial", "verification")
 """Tables whose rows have an id."""
 GIVEN, GIVEN_ONCE = "id INTEGER PRIMARY KEY,", "id INTEGER PRIMARY KEY AUTOINCREMENT,"
+
+STRICT = sqlite3.sqlite_version_info >= (3, 37)
+
+EXPERIMENT = """
+    id INTEGER PRIMARY KEY,
+    name TEXT NOT NULL UNIQUE,
+    question TEXT NOT NULL,
+    definition TEXT NOT NULL,
+    key TEXT NOT NULL,
+    versions TEXT NOT NULL,
+    status TEXT NOT NULL CHECK (status IN ('running', 'done')),
+    started_at TEXT NOT NULL,
+    finished_at TEXT
+"""
 
 
 def upgrade() -> None:
@@ -33,10 +51,21 @@ def upgrade() -> None:
             _run(definition)
     for _, definition in views:
         _run(definition)
+    _add_experiments()
 
 
-def downgrade() -> None:
-    raise NotImplementedError("notes would be lost; keep a copy of the file")
+def _add_experiments() -> None:
+    op.execute(f"CREATE TABLE experiment ({EXPERIMENT}){' STRICT' if STRICT else ''}")
+    op.execute("ALTER TABLE session ADD COLUMN experiment_id INTEGER REFERENCES experiment (id)")
+    op.execute(
+        "ALTER TABLE session ADD COLUMN condition TEXT "
+        "CHECK ((condition IS NULL) = (experiment_id IS NULL))"
+    )
+    op.execute(
+        "ALTER TABLE learning_run ADD COLUMN kept TEXT NOT NULL DEFAULT 'all' "
+        "CHECK (kept IN ('all', 'rows', 'trials'))"
+    )
+    op.execute("CREATE UNIQUE INDEX session_by_condition ON session (experiment_id, condition)")
 
 
 def _definitions(which: str) -> list[tuple[str, str]]:

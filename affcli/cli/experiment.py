@@ -1,0 +1,159 @@
+"""``affcli experiment``: many robots under several conditions, as a TOML file says (§6, §7)."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from affcli import lab
+from affcli import store as stores
+from affcli.analysis.experiment import tallies
+from affcli.cli.database import opened
+from affcli.cli.options import (
+    DEFAULT_DATABASE,
+    AsJson,
+    Database,
+    Resume,
+    Workers,
+    checked_workers,
+)
+from affcli.cli.terminal import now, progress, say, show_either
+from affcli.core.names import one_of
+from affcli.core.records import ExperimentInfo
+from affcli.core.specs import Keep
+from affcli.errors import BadInputError, UsageError, one_line
+from affcli.report.experiment import (
+    ConditionResult,
+    Cost,
+    cost_json,
+    cost_table,
+    experiment_json,
+    experiment_table,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Shard:
+    """One of several parts of the robots: every Nth, from the Kth on."""
+
+    part: int = 1
+    parts: int = 1
+
+    def of(self, robots: int) -> range:
+        """Return the numbers of its robots."""
+        return range(self.part - 1, robots, self.parts)
+
+
+def checked_shard(text: str) -> Shard:
+    """Return the part that ``K/N`` names; BadInputError when K does not lie in 1 to N."""
+    found = re.fullmatch(r"([0-9]{1,6})/([0-9]{1,6})", text)
+    part, parts = (int(found[1]), int(found[2])) if found else (0, 0)
+    if not 1 <= part <= parts:
+        raise BadInputError(f"--shard {one_line(text, 40)}: must be K/N, the Kth of N, as in 3/10")
+    return Shard(part, parts)
+
+
+def checked_keep(text: str) -> Keep:
+    """Return how much of a life is kept; UsageError when there is no such measure."""
+    return one_of("measure of what to keep", text, Keep)
+
+
+def experiment(
+    *,
+    file: Annotated[
+        Path | None,
+        typer.Argument(
+            help="What is to be done: a TOML file.", metavar="FILE.toml", readable=False
+        ),
+    ] = None,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Say what it will take; do nothing.")
+    ] = False,
+    resume: Resume = False,
+    shard: Annotated[
+        Shard | None,
+        typer.Option(
+            "--shard",
+            help="Of N machines the Kth: let every Nth robot live.",
+            metavar="K/N",
+            parser=checked_shard,
+        ),
+    ] = None,
+    keep: Annotated[
+        Keep,
+        typer.Option(
+            "--keep",
+            help="all; rows: no behaviors; trials: only how runs and trials ended.",
+            metavar="WHAT",
+            parser=checked_keep,
+        ),
+    ] = "all",  # type: ignore[assignment]  # parsed like any other
+    workers: Workers = None,
+    database: Database = DEFAULT_DATABASE,
+    as_json: AsJson = False,
+) -> None:
+    """Let many robots live under several conditions, as a file says.
+
+    Conditions are paired robot by robot: what they share is learned once. The result is the same
+    for any number of workers. An interrupted experiment goes on when the same command is given
+    again, as does the latest one with --resume alone.
+    """
+    count = checked_workers(workers)
+    if file is None and (dry_run or not resume):
+        raise UsageError("which experiment? give a TOML file, or --resume")
+    wanted = None if file is None else lab.definition.experiment_file(file)
+    if dry_run and wanted is not None:
+        _say_cost(wanted, count, keep, as_json=as_json)
+        return
+    with opened(database, create=wanted is not None, write=True) as store:
+        what = wanted or _interrupted(store, database)
+        info = lab.experiment.begin(store, what, now)
+        robots = (shard or Shard()).of(what.robots)
+        with progress(one_line(what.name), len(robots), "robots") as bar:
+            for saved in lab.experiment.run(store, what, info, count, now, say, robots, keep):
+                bar(saved, "")
+        results = _results(store, info)
+        there = len(store.sessions.saved_robots(info.conditions[0][1]))
+    of_all = f"{there}" if there == what.robots else f"{there} of {what.robots}"
+    say(f"experiment {one_line(what.name)}: {of_all} robots, saved in {one_line(database)}")
+    said = (what.name, what.question, there, results)
+    show_either(
+        as_json=as_json,
+        results=lambda: [experiment_json(*said)],
+        tables=lambda: [experiment_table(*said)],
+    )
+
+
+def _interrupted(store: "stores.Store", database: Path) -> "lab.experiment.Experiment":
+    """Return the experiment that was begun last and is not done."""
+    begun = [one for one in store.experiments.all() if one.status == "running"]
+    if not begun:
+        raise UsageError(f"nothing to resume in {database}; begin one: affcli experiment FILE.toml")
+    place = f"experiment {one_line(begun[-1].name)} in {database}"
+    return lab.definition.experiment_of(begun[-1].definition, place)
+
+
+def _say_cost(
+    what: "lab.experiment.Experiment", workers: int, keep: Keep, *, as_json: bool
+) -> None:
+    """Let one robot live, and say what all of them will take."""
+    with progress("one robot", 1.0):
+        found = lab.experiment.estimate(what, now, keep)
+    counts = (found.robots, found.learning_runs, found.trials, found.robot_hours)
+    cost = Cost(*counts, found.seconds, found.bytes, workers)
+    names = [condition.name for condition in what.conditions]
+    show_either(
+        as_json=as_json,
+        results=lambda: [cost_json(names, cost)],
+        tables=lambda: [cost_table(what.name, names, cost)],
+    )
+
+
+def _results(store: "stores.Store", info: ExperimentInfo) -> list[ConditionResult]:
+    """Return what each condition gave."""
+    return [
+        ConditionResult(name, session, tallies(store.results.success_counts(session)))
+        for name, session in info.conditions
+    ]

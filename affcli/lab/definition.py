@@ -1,0 +1,304 @@
+"""An experiment as data: what a file of one says, all of it checked before anything runs.
+
+``[experiment]`` names it, ``[base]`` is what all conditions share, each ``[[condition]]`` is the
+base but for what it says, and ``[sweep]`` holds lists of values: every point of their grid is a
+condition. What the store keeps is such a file too, with base and sweep written out everywhere.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from itertools import combinations, product
+from math import prod
+from pathlib import Path
+from typing import Any
+
+from affcli import registry
+from affcli.config import (
+    SECTIONS,
+    SENSOR,
+    checked_by_name,
+    known_settings,
+    settings_by_name,
+    toml_file,
+)
+from affcli.core.identity import key_of, shown
+from affcli.core.limits import LARGEST_SEED, LONGEST_HOURS, MOST_ROBOTS
+from affcli.core.names import one_of
+from affcli.core.part import Kind
+from affcli.core.specs import BROKEN_SHAPE, BROKEN_TOOL
+from affcli.errors import BadInputError, UsageError, one_line
+from affcli.lab.experiment import ADAPTATION, ADAPTATION_TASKS, Condition, Experiment
+from affcli.lab.run_parts import RunParts, tasks_of
+from affcli.simulation.tools.paper import TOOL_PARTS
+
+TABLES = ("experiment", "base", "condition", "sweep")
+HEAD = ("name", "question", "robots", "seed", "tasks")
+NAMED: Mapping[str, Kind] = {
+    "explorer": "explorers",
+    "planner": "planners",
+    "binding": "bindings",
+    "world": "worlds",
+    "tools": "tools",
+    "repertoire": "behaviors",
+    "tasks": "tasks",
+}
+"""What a condition says by the names of parts."""
+LISTS = ("tools", "repertoire", "tasks")
+KEYS = (*NAMED, "hours", "minutes", "sensor", "settings")
+"""What a condition may say; and each setting as ``section.key``."""
+USUAL: Mapping[str, Any] = {
+    **{key: registry.DEFAULTS[key] for key in ("explorer", "planner", "binding", "world")},
+    "hours": 1.0,
+    "tools": list(TOOL_PARTS),
+    "repertoire": [registry.DEFAULTS["repertoire"]],
+    "tasks": [ADAPTATION_TASKS, ADAPTATION],
+}
+"""What a condition is when nothing is said: the paper's."""
+MOST_CONDITIONS = 1_000
+LONGEST_NAME, LONGEST_QUESTION = 80, 1_000
+
+Said = dict[str, Any]
+"""What is said of a condition: by the keys of `USUAL`, and settings by their names."""
+
+
+def experiment_file(path: Path) -> Experiment:
+    """Return the experiment that a TOML file describes.
+
+    Raises:
+        BadInputError: it cannot be read, or something in it is not as it must be; the message names
+            the file and the place in it.
+    """
+    source = f"experiment {one_line(path)}"
+    return experiment_of(toml_file(path, source), source)
+
+
+def experiment_of(tables: Mapping[str, Any], source: str) -> Experiment:
+    """Return the experiment that tables describe, as a file has them; see `experiment_file`."""
+    with _at(source):
+        for table in tables:
+            one_of("table", table, TABLES)
+        head = _table(tables, "experiment")
+        base, sweep = _table(tables, "base"), _table(tables, "sweep")
+    place = f"{source}: experiment"
+    with _at(place):
+        for key in head:
+            one_of("key", key, HEAD)
+        name = _text(head.get("name"), "name", LONGEST_NAME)
+        question = _text(head.get("question", ""), "question", LONGEST_QUESTION, least=0)
+        robots = _whole(head.get("robots"), "robots", 1, MOST_ROBOTS)
+        seed = _whole(head.get("seed", 0), "seed", 0, LARGEST_SEED)
+    shared = _said({key: head[key] for key in head if key == "tasks"}, place)
+    shared |= _said(base, f"{source}: base")
+    named = _named_conditions(tables.get("condition", []), source)
+    grid = _grid(sweep, f"{source}: sweep", MOST_CONDITIONS // max(len(named), 1))
+    conditions, forms = [], []
+    there: dict[str, str] = {}
+    for where, own, said in named:
+        for label, point in grid:
+            with _at(where):
+                for key in point.keys() & said.keys():
+                    raise BadInputError(f"{key} is said here and in the sweep; say it once")
+                title = ", ".join(filter(None, (own, label))) or "base"
+                condition, form = _condition(title, shared | said | point)
+                _require_new(condition, there)
+            conditions.append(condition)
+            forms.append(form)
+    definition = {
+        "experiment": {"name": name, "question": question, "robots": robots, "seed": seed},
+        "condition": forms,
+    }
+    return Experiment(name, question, robots, seed, tuple(conditions), definition)
+
+
+@contextmanager
+def _at(place: str) -> Iterator[None]:
+    """Say at which place of the file something is wrong."""
+    try:
+        yield
+    except (BadInputError, UsageError) as error:
+        # A key is a part of the place; a word that is said of the place stands after it.
+        raise BadInputError(f"{place}: {error}") from error
+
+
+def _table(tables: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    """Return a table of the file, empty when it has none."""
+    found = tables.get(name, {})
+    if not isinstance(found, dict):
+        raise BadInputError(f"{name} must be a table, [{name}]")
+    return found
+
+
+def _text(value: object, key: str, most: int, least: int = 1) -> str:
+    """Return a text of so many printable letters."""
+    if not isinstance(value, str) or not value.isprintable() or not least <= len(value) <= most:
+        raise BadInputError(f"{key} must be a line of {least} to {most} letters")
+    return value
+
+
+def _whole(value: object, key: str, low: int, high: int) -> int:
+    """Return a whole number within limits."""
+    if not isinstance(value, int) or isinstance(value, bool) or not low <= value <= high:
+        said = "" if value is None else f" = {one_line(value, 40)}"
+        raise BadInputError(f"{key}{said} must be a whole number in {low} to {high}")
+    return value
+
+
+def _hours(value: object, factor: float) -> float:
+    """Return robot hours, given in hours or in minutes."""
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    hours = float(value) * factor if number else 0.0  # type: ignore[arg-type]
+    if not 0.0 < hours <= LONGEST_HOURS:
+        raise BadInputError(
+            f"{one_line(value, 40)} must be a number of more than 0 and at most "
+            f"{LONGEST_HOURS / factor:g}"
+        )
+    return hours
+
+
+def _named_conditions(tables: object, source: str) -> list[tuple[str, str, Said]]:
+    """Return the place, the name and what is said of each condition; without any, of one."""
+    if not isinstance(tables, list) or not all(isinstance(one, dict) for one in tables):
+        raise BadInputError(f"{source}: condition must be tables, [[condition]]")
+    named = []
+    for number, table in enumerate(tables):
+        place = f"{source}: condition[{number}]"
+        with _at(place):
+            name = _text(table.get("name"), "name", LONGEST_NAME)
+        said = _said({key: value for key, value in table.items() if key != "name"}, place)
+        named.append((place, name, said))
+    return named or [(source, "", {})]
+
+
+def _grid(table: Mapping[str, Any], place: str, most: int) -> list[tuple[str, Said]]:
+    """Return the name and what is said of each point of a grid; one of no name without a sweep."""
+    axes = dict(_by_name(table, place))
+    short = [key.rpartition(".")[2] for key in axes]
+    for key, values in axes.items():
+        if not isinstance(values, list) or not values:
+            raise BadInputError(f"{place}.{key}: must be a list of values")
+    if prod(map(len, axes.values())) > most:
+        raise BadInputError(f"{place}: more than {MOST_CONDITIONS} conditions; sweep fewer values")
+    points = [
+        [
+            (f"{last if short.count(last) == 1 else key}={_shown(value)}", _said({key: value}, at))
+            for number, value in enumerate(values)
+            for at in [f"{place}[{number}]"]
+        ]
+        for last, (key, values) in zip(short, axes.items(), strict=True)
+    ]
+    return [
+        (", ".join(name for name, _ in point), {k: v for _, said in point for k, v in said.items()})
+        for point in product(*points)
+    ]
+
+
+def _shown(value: Any) -> str:
+    """Return a swept value as it stands in the name of a condition."""
+    if isinstance(value, list):
+        return "+".join(map(_shown, value))
+    return shown(value) if isinstance(value, int | float) else one_line(value, LONGEST_NAME)
+
+
+def _by_name(table: Mapping[str, Any], place: str) -> Iterator[tuple[str, Any]]:
+    """Yield what a table says by the names of keys and of settings, in whatever way it is written:
+    ``friction.tool_puck``, ``[base.friction]``, ``settings.friction.tool_puck``.
+    """
+    for key, value in table.items():
+        if key == "settings" and isinstance(value, dict):
+            for name, one in value.items():
+                section = name if "." in name or isinstance(one, dict) else f"{name}."
+                yield from _by_name({section: one}, place)
+        elif isinstance(value, dict):
+            yield from ((f"{key}.{name}", one) for name, one in value.items())
+        else:
+            if "." not in key:
+                with _at(place):
+                    one_of("key", key, [*KEYS, *SECTIONS])
+            yield key, value
+
+
+def _said(table: Mapping[str, Any], place: str) -> Said:
+    """Return what a table says, each value checked by itself."""
+    said: Said = {}
+    for given, value in _by_name(table, place):
+        key = {"minutes": "hours", "sensor": SENSOR}.get(given, given)
+        if key in said:
+            raise BadInputError(f"{place}.{given}: {key} is said twice")
+        if "." in key:
+            said |= checked_by_name({key: value}, place)
+            continue
+        with _at(f"{place}.{given}"):
+            if key == "hours":
+                said[key] = _hours(value, 1.0 if given == "hours" else 1.0 / 60.0)
+            else:
+                said[key] = _parts(key, value)
+    return said
+
+
+def _parts(key: str, value: object) -> str | list[str]:
+    """Return the parts that are asked for by name, each as it is written."""
+    given: list[object] = value if isinstance(value, list) and key in LISTS else [value]
+    texts = [one for one in given if isinstance(one, str)]
+    if key not in NAMED or not texts or texts != given:
+        kind = "names in a list" if key in LISTS else "a name"
+        raise BadInputError(f"{one_line(value, 40)} must be {kind}")
+    found = []
+    for text in texts:
+        own = text if key == "tasks" else registry.component(NAMED[key], text)
+        if key == "tasks" and text != ADAPTATION:
+            one_of("tasks", text, [*registry.parts("tasks"), ADAPTATION])
+        # What of a binding is left out, the sizes of the tools decide: it stays as it is written.
+        found.append(text if key == "binding" else str(own))
+    for one, other in combinations(found, 2):
+        if one == other:
+            raise BadInputError(f"{one} comes twice")
+    return found if key in LISTS else found[0]
+
+
+def _condition(name: str, said: Said) -> tuple[Condition, dict[str, Any]]:
+    """Return a condition of all that is said of it, and its stored form."""
+    own = {**USUAL, **{key: value for key, value in said.items() if "." not in key}}
+    settings = settings_by_name({k: v for k, v in said.items() if "." in k}, "settings")
+    parts = RunParts.chosen(
+        settings,
+        **{key: own[key] for key in ("repertoire", "binding", "explorer", "world")},
+    )
+    planner = registry.component("planners", own["planner"])
+    registry.planner(planner)
+    condition = Condition(
+        *(name, parts, planner, own["hours"], tuple(own["tools"]), tuple(own["tasks"]))
+    )
+    world = condition.world
+    for task_set in condition.tasks:
+        tasks_of(world, ADAPTATION_TASKS if task_set == ADAPTATION else task_set)
+    for tool in (*condition.tools, BROKEN_SHAPE):
+        parts.tool(tool)
+    _require_use(condition.tools, condition.tasks)
+    default = {key: one.default for key, one in known_settings().items()}
+    differing = {k: v for k, v in settings.values().items() if v != default[k] and k != SENSOR}
+    sensor = {"sensor": parts.sensor, "settings": differing}
+    return condition, {"name": name, **own, **sensor}
+
+
+def _require_use(tools: Sequence[str], tasks: Sequence[str]) -> None:
+    """Refuse tasks without their tool, and tools without a task."""
+    if ADAPTATION in tasks and BROKEN_TOOL not in tools:
+        raise BadInputError(f"tasks {ADAPTATION} is of the {BROKEN_TOOL}, which is not in tools")
+    idle = [tool for tool in tools if tool != BROKEN_TOOL and set(tasks) == {ADAPTATION}]
+    if idle:
+        raise BadInputError(f"tools: no tasks for the {idle[0]}; leave it out, or add tasks")
+
+
+def _require_new(condition: Condition, there: dict[str, str]) -> None:
+    """Refuse a condition that is there already, by name or in all it says; else note it.
+
+    Args:
+        condition: the condition.
+        there: the names of the conditions before it, by their keys.
+    """
+    name = one_line(condition.name)
+    if condition.name in there.values():
+        raise BadInputError(f"a condition named {name} is there already; name this one otherwise")
+    other = there.setdefault(key_of(condition.canonical() | {"name": ""}), condition.name)
+    if other != condition.name:
+        raise BadInputError(f"{name} is the same as {one_line(other)}; leave one of them out")

@@ -1,0 +1,347 @@
+"""Experiments: many robots under several conditions, each robot exactly once (§6, §7).
+
+The unit of work is one robot of the whole experiment: a pure function of the experiment and the
+robot's number. It learns once what its conditions share, so they are paired robot by robot. Another
+process may live it; this one alone saves it, in one transaction. To go on is to see who is missing.
+"""
+
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from affcli import registry
+from affcli.core.affordance_table import AffordanceTable
+from affcli.core.identity import Component, canonical_json, key_of
+from affcli.core.records import ExperimentInfo
+from affcli.core.specs import (
+    BROKEN_SHAPE,
+    BROKEN_TOOL,
+    EXPERIMENT,
+    Keep,
+    LearningSpec,
+    LearningStep,
+    Protocol,
+    RobotRecord,
+    RowStarts,
+    SessionSpec,
+    Tested,
+    TrialRecord,
+)
+from affcli.core.world import World
+from affcli.errors import UsageError, one_line
+from affcli.lab.learning_run import LearningRun
+from affcli.lab.run_parts import RunParts, settings_of, world_of
+from affcli.lab.trials import trial_specs, whole_trial
+from affcli.lab.versions import versions
+from affcli.lab.workers import in_order
+from affcli.store import PackedRobot, Store, open_store, pack_robot
+
+ADAPTATION = "adaptation"
+"""Among the tasks of a condition: the paper's tool breaks, and does `ADAPTATION_TASKS` (§7.2)."""
+ADAPTATION_TASKS = registry.DEFAULTS["task"]
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """What the robots of one condition learn and do.
+
+    Args:
+        name: of the condition.
+        parts: what its learning runs carry.
+        planner: how its robots choose rows.
+        hours: robot hours with each tool.
+        tools: which are learned, by name.
+        tasks: sets of tasks, each done with every tool; and maybe `ADAPTATION`.
+    """
+
+    name: str
+    parts: RunParts
+    planner: Component
+    hours: float
+    tools: tuple[str, ...]
+    tasks: tuple[str, ...]
+
+    @property
+    def world(self) -> World:
+        """Where it takes place."""
+        return registry.world(self.parts.world, settings_of(self.parts))
+
+    def session(self, kind: str, seed: int, robots: int) -> SessionSpec:
+        """Return what its session is a function of."""
+        sets = [one for one in self.tasks if one != ADAPTATION] or [ADAPTATION_TASKS]
+        own = (kind, seed, robots, self.planner, ", ".join(sets))
+        return SessionSpec(*own, **self.parts.carried())
+
+    def canonical(self) -> dict[str, Any]:
+        """Return all that lives under it are functions of, beside seed and robot, as JSON types."""
+        return {
+            **self.parts.canonical(),
+            "name": self.name,
+            "planner": self.planner.canonical(),
+            "hours": self.hours,
+            "tools": [self.parts.tool(name).canonical() for name in self.tools],
+            "tasks": list(self.tasks),
+        }
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """Many robots under several conditions.
+
+    Args:
+        name: of the experiment; its results are found by it.
+        question: what it asks.
+        robots: how many.
+        seed: shared by all robots.
+        conditions: one at least.
+        definition: all of this as JSON types, to be read again; empty when built in.
+    """
+
+    name: str
+    question: str
+    robots: int
+    seed: int
+    conditions: tuple[Condition, ...]
+    definition: Mapping[str, Any]
+
+    @cached_property
+    def key(self) -> str:
+        """The key: experiments with equal keys give equal robots. How many there are to be, and the
+        question, are not part of it.
+        """
+        conditions = [condition.canonical() for condition in self.conditions]
+        return key_of({"seed": self.seed, "conditions": conditions})
+
+    def learning(self, robot: int) -> list[tuple[LearningSpec, list[int]]]:
+        """Return what a robot learns, each once, with the conditions that use it."""
+        uses: dict[str, tuple[LearningSpec, list[int]]] = {}
+        for number, condition in enumerate(self.conditions):
+            for tool in condition.tools:
+                spec = condition.parts.spec(tool, self.seed, robot, condition.hours)
+                uses.setdefault(spec.key, (spec, []))[1].append(number)
+        return list(uses.values())
+
+
+class _Learned:
+    """A learning run with what trials need of it."""
+
+    def __init__(self, spec: LearningSpec) -> None:
+        run = LearningRun(spec)
+        self.spec = spec
+        self.steps: tuple[LearningStep, ...] = tuple(run.steps())
+        self.seconds = run.setting.robot.clock
+        self.calibration = run.calibration
+        rows = (record.affordance for record, _ in self.steps)
+        self.table = AffordanceTable(row for row in rows if row is not None)
+
+    def trials(self, condition: Condition) -> Iterator[TrialRecord]:
+        """Yield the trials of a condition that start from this run's table."""
+        spec, world = self.spec, world_of(self.spec)
+        for tasks in condition.tasks:
+            if tasks != ADAPTATION:
+                for trial in trial_specs(
+                    *(Protocol.EXTENSION_OF_REACH, spec, spec.held, world.tasks(tasks)),
+                    *(spec.seed, spec.sensor, condition.planner, world),
+                ):
+                    yield whole_trial(trial, spec, self.table, world)
+            elif spec.tool == BROKEN_TOOL:
+                left = condition.parts.tool(BROKEN_SHAPE)
+                lost = world.lost_rows(spec, left, self._row_starts())
+                for trial in trial_specs(
+                    *(Protocol.TOOL_ADAPTATION, spec, left, world.tasks(ADAPTATION_TASKS)),
+                    *(spec.seed, spec.sensor, condition.planner, world),
+                ):
+                    yield whole_trial(trial, spec, self.table, world, lost)
+
+    def _row_starts(self) -> RowStarts:
+        """Return where the wrist and the attractor truly were when each row was made."""
+        return {
+            record.step: (record.execution.wrist_start, truth.start)
+            for record, truth in self.steps
+            if record.affordance and truth is not None
+        }
+
+
+def one_robot(experiment: Experiment, robot: int) -> RobotRecord:
+    """Return the life of one robot: a pure function of the experiment and the robot's number."""
+    learned, tested = [], []
+    for number, (spec, conditions) in enumerate(experiment.learning(robot)):
+        run = _Learned(spec)
+        learned.append(run)
+        for condition in conditions:
+            trials = run.trials(experiment.conditions[condition])
+            tested += [Tested(condition, number, trial) for trial in trials]
+    return RobotRecord(
+        robot,
+        tuple((run.spec, run.steps, run.seconds) for run in learned),
+        tuple(tested),
+        tuple(run.calibration for run in learned),
+    )
+
+
+def begin(store: Store, experiment: Experiment, now: Callable[[], str]) -> ExperimentInfo:
+    """Return the stored experiment, new or as far as it came.
+
+    Choice: of one that is there the question and the number of robots may change; whoever changes
+    more gives it another name, so that under one name all robots are of one experiment.
+
+    Raises:
+        UsageError: the one of this name in the store is another, or has more robots.
+    """
+    conditions = [
+        (
+            condition.name,
+            condition.session(EXPERIMENT, experiment.seed, experiment.robots),
+            _made_with(condition),
+        )
+        for condition in experiment.conditions
+    ]
+    name, file = one_line(experiment.name), one_line(store.path)
+    found = store.experiments.find(experiment.name)
+    if found is not None and found.key != experiment.key:
+        raise UsageError(
+            f"experiment {name} is in {file} already, but {_changes(found, experiment)}; give "
+            "this one another name, or another --db"
+        )
+    saved = store.sessions.saved_robots(found.conditions[0][1]) if found is not None else ()
+    if max(saved, default=0) >= experiment.robots:
+        raise UsageError(
+            f"experiment {name}: {len(saved)} robots are in {file} already; write robots = "
+            f"{max(saved) + 1} or more"
+        )
+    return store.experiments.begin(
+        experiment.name, experiment.key, experiment.definition, conditions, now()
+    )
+
+
+def conduct(
+    store: Store,
+    experiment: Experiment,
+    sessions: Sequence[int],
+    robots: Sequence[int],
+    workers: int,
+    now: Callable[[], str],
+    warn: Callable[[str], object] = str,
+    keep: Keep = Keep.ALL,
+) -> Iterator[int]:
+    """Let robots of an experiment live; save each as it is done.
+
+    Robots that the store holds already are not run again. The others are saved in the order given,
+    by this process alone: the same store for any number of workers.
+
+    Args:
+        store: open for writing.
+        experiment: robot i is a function of (experiment, i).
+        sessions: those of its conditions, in order.
+        robots: their numbers.
+        workers: processes; 1 runs everything in this one.
+        now: gives the time as ISO text.
+        warn: is told when the processes cannot be started, and one does it all.
+        keep: how much of their lives is saved.
+
+    Yields:
+        How many of these robots are saved: at the beginning, and each time one more is.
+    """
+    made_with = dict(zip(sessions, map(_made_with, experiment.conditions), strict=True))
+    there = store.sessions.saved_robots(sessions[0])
+    missing = [robot for robot in robots if robot not in there]
+    saved = len(robots) - len(missing)
+    yield saved
+    for life in in_order(partial(_packed_life, experiment, keep), missing, workers, warn):
+        store.sessions.save_robot(made_with, life, now())
+        saved += 1
+        yield saved
+
+
+def run(
+    store: Store,
+    experiment: Experiment,
+    info: ExperimentInfo,
+    workers: int,
+    now: Callable[[], str],
+    warn: Callable[[str], object] = str,
+    robots: Sequence[int] | None = None,
+    keep: Keep = Keep.ALL,
+) -> Iterator[int]:
+    """Let robots of an experiment live, all or some, as `conduct` does.
+
+    It is done when all of them are in the store, whoever brought them there.
+    """
+    sessions = [session for _, session in info.conditions]
+    chosen = range(experiment.robots) if robots is None else robots
+    yield from conduct(store, experiment, sessions, chosen, workers, now, warn, keep)
+    if len(store.sessions.saved_robots(sessions[0])) == experiment.robots:
+        store.experiments.finish(info.id, now())
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """What an experiment will take, by one of its robots, which has just lived.
+
+    Args:
+        robots, learning_runs, trials: how many in all.
+        robot_hours: of learning, in all.
+        seconds: that the one robot took, on one core.
+        bytes: of a database, that it took.
+    """
+
+    robots: int
+    learning_runs: int
+    trials: int
+    robot_hours: float
+    seconds: float
+    bytes: int
+
+
+def estimate(experiment: Experiment, now: Callable[[], str], keep: Keep = Keep.ALL) -> Estimate:
+    """Let the first robot live, save it in a database that is thrown away, and measure both."""
+    began = time.perf_counter()
+    packed = _packed_life(experiment, keep, 0)
+    seconds = time.perf_counter() - began
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "one_robot.db")
+        with open_store(path, create=True, write=True) as store:
+            sessions = [number for _, number in begin(store, experiment, now).conditions]
+        empty = path.stat().st_size
+        with open_store(path, create=False, write=True) as store:
+            made_with = dict(zip(sessions, map(_made_with, experiment.conditions), strict=True))
+            store.sessions.save_robot(made_with, packed, now())
+        size = path.stat().st_size - empty
+    robots, learned = experiment.robots, [spec for spec, _ in experiment.learning(0)]
+    trials = sum(len(trials) for run in packed.runs for trials in run.trials.values())
+    hours = sum(spec.hours or 0.0 for spec in learned)
+    return Estimate(robots, robots * len(learned), robots * trials, robots * hours, seconds, size)
+
+
+def _made_with(condition: Condition) -> dict[str, str]:
+    """Return the versions that decide the numbers of a condition."""
+    return versions(condition.world, condition.parts.sensor)
+
+
+def _packed_life(experiment: Experiment, keep: Keep, robot: int) -> PackedRobot:
+    """Return a robot's life as rows: the process that lived it does the packing."""
+    return pack_robot(one_robot(experiment, robot), keep)
+
+
+def _changes(stored: ExperimentInfo, wanted: Experiment) -> str:
+    """Say what a stored experiment differs in first from one of the same name."""
+    was, now = stored.definition, wanted.definition
+    if was["experiment"]["seed"] != wanted.seed:
+        return f"its seed is {was['experiment']['seed']}, not {wanted.seed}"
+    old, new = ({one["name"]: one for one in form["condition"]} for form in (was, now))
+    if list(old) != list(new):
+        return f"its conditions are {', '.join(map(one_line, old))}"
+    for name, own in old.items():
+        before, after = ({**one, **one["settings"], "settings": 0} for one in (own, new[name]))
+        for key in sorted(before.keys() | after.keys()):
+            values = [
+                one_line(canonical_json(one.get(key, "its default")).replace('"', ""))
+                for one in (before, after)
+            ]
+            if values[0] != values[1]:
+                return f"{key} of {one_line(name)} is {', not '.join(values)}"
+    return "this affcli makes other parts of the same names"

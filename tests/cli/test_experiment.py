@@ -1,0 +1,150 @@
+"""``affcli experiment``: what it says before, while and after robots live."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from affcli.cli import terminal
+from affcli.lab.definition import experiment_file
+from affcli.lab.experiment import begin, run
+from affcli.store import open_store
+from tests.cli.program import contents, done, ending, names_in, refused, rows, started
+from tests.lab.quick import now, taken
+
+TEXT = """
+[experiment]
+name = "two"
+question = "Does the friction matter?"
+robots = 2
+[base]
+minutes = 6
+tools = ["t-hook"]
+trial.max_steps = 3
+[[condition]]
+name = "paper"
+[[condition]]
+name = "rough"
+friction.tool_puck = 0.4
+"""
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    path = tmp_path / "two.toml"
+    path.write_text(TEXT)
+    return path
+
+
+@pytest.fixture(scope="module")
+def lived(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A database with the robots of the file."""
+    folder = tmp_path_factory.mktemp("experiment")
+    (folder / "two.toml").write_text(TEXT)
+    done("experiment", folder / "two.toml", "--workers", "1", "--db", folder / "two.db")
+    return folder / "two.db"
+
+
+def test_it_says_what_each_condition_gave(file: Path, lived: Path) -> None:
+    before = lived.read_bytes()
+    ended = done("experiment", file, "--db", lived)
+    assert ended.err == f"experiment two: 2 robots, saved in {lived}\n"
+    title, heading, _, *cells, question = ended.out.splitlines()
+    assert title == "two: solved, mean of 2 robots"
+    assert heading.split() == ["condition", "session", "extension-of-reach", "broken", "tool"]
+    assert [line.split()[:2] for line in cells] == [["paper", "1"], ["rough", "2"]]
+    assert question == "Does the friction matter?"
+    assert lived.read_bytes() == before
+
+
+def test_its_json_has_each_robots_successes(file: Path, lived: Path) -> None:
+    value: Any = done("experiment", file, "--db", lived, "--json").json
+    assert (value["experiment"], value["robots"]) == ("two", 2)
+    for condition in value["conditions"]:
+        for kind, protocol in (
+            ("extension-of-reach", "extension of reach"),
+            ("broken tool", "tool adaptation"),
+        ):
+            counted = rows(
+                lived,
+                "SELECT sum(outcome = 'solved') FROM trial WHERE protocol = "
+                f"'{protocol}' AND session_id = {condition['session']} GROUP BY robot",
+            )
+            assert condition["solved"][kind] == {
+                "trials": 32,
+                "by_robot": [count for (count,) in counted],
+            }
+
+
+def test_two_workers_make_the_database_that_one_makes(
+    file: Path, lived: Path, tmp_path: Path
+) -> None:
+    both = tmp_path / "both.db"
+    with started("experiment", file, "--workers", "2", "--db", both) as process:
+        assert ending(process).code == 0
+    assert contents(both) == contents(lived)
+
+
+def test_a_dry_run_says_what_it_takes_and_saves_nothing(file: Path, tmp_path: Path) -> None:
+    words = ("experiment", file, "--dry-run", "--workers", "2")
+    shown = done(*words, cwd=tmp_path).out
+    assert shown.startswith("two: 2 conditions\n")
+    assert re.search(r"^robots +2$", shown, re.MULTILINE)
+    assert re.search(r"^robot hours of learning +0\.4$", shown, re.MULTILINE)
+    assert re.search(r"^learning runs +4$", shown, re.MULTILINE)
+    assert re.search(r"^trials +128$", shown, re.MULTILINE)
+    assert re.search(r"^time on 2 workers, about +0 min \d\d s$", shown, re.MULTILINE)
+    assert "Estimated from robot 0, which has just lived" in shown
+    value: Any = done(*words, "--json", cwd=tmp_path).json
+    assert value["conditions"] == ["paper", "rough"]
+    assert value["estimated_bytes"] == 2 * value["measured"]["bytes"] > 0
+    assert value["estimated_seconds"] == value["measured"]["seconds"] > 0.0
+    assert names_in(tmp_path) == ["two.toml"]
+
+
+def test_resume_alone_goes_on_with_the_latest(file: Path, lived: Path, tmp_path: Path) -> None:
+    path = tmp_path / "half.db"
+    what = experiment_file(file)
+    with open_store(path, create=True, write=True) as store:
+        taken(run(store, what, begin(store, what, now), 1, now), 2)
+    assert rows(path, "SELECT DISTINCT robot FROM trial") == [(0,)]
+    file.unlink()
+    ended = done("experiment", "--resume", "--workers", "1", "--db", path)
+    assert ended.out.startswith("two: solved, mean of 2 robots\n")
+    assert contents(path) == contents(lived)
+    assert "nothing to resume" in refused(2, "experiment", "--resume", "--db", path)
+
+
+def test_what_is_wrong_is_one_line(file: Path, tmp_path: Path) -> None:
+    assert "which experiment? give a TOML file" in refused(2, "experiment", cwd=tmp_path)
+    assert "which experiment?" in refused(2, "experiment", "--dry-run", "--resume", cwd=tmp_path)
+    assert "none.toml: No such file" in refused(4, "experiment", "none.toml", cwd=tmp_path)
+    file.write_text(f"{TEXT}planner = 'lookahed'\n")
+    line = refused(4, "experiment", file, cwd=tmp_path)
+    assert line == (
+        f"affcli: experiment {file}: condition[1].planner: no planner 'lookahed'; did you mean "
+        "nested-query? (affcli list planners)"
+    )
+    assert names_in(tmp_path) == ["two.toml"]
+
+
+def test_another_experiment_of_the_name_is_refused(file: Path, lived: Path) -> None:
+    file.write_text(TEXT.replace("0.4", "0.5"))
+    line = refused(2, "experiment", file, "--db", lived)
+    assert "friction.tool_puck of rough is 0.4, not 0.5" in line
+    assert line.endswith("give this one another name, or another --db")
+
+
+def test_without_a_terminal_it_says_how_far_it_is(
+    file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """From the first moment on, before any robot is done."""
+    monkeypatch.setattr(terminal, "A_MINUTE", 0.05)
+    said = done("experiment", file, "--workers", "1", "--db", tmp_path / "own.db").err
+    first, *others = said.splitlines()
+    assert re.fullmatch(r"two: 0 of 2 robots, \d:\d\d", first)
+    far = r"two: [012] of 2 robots(, [0-9.]+ a minute)?, \d:\d\d(, \d:\d\d left)?"
+    assert all(re.fullmatch(far, line) for line in others[:-1])
+    assert re.fullmatch(far, others[-2])
+    assert "a minute" in said

@@ -1,0 +1,60 @@
+"""Each experiment of ``experiments/`` that is a file runs: here with two short robots."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from affcli.config import toml_file
+from affcli.core.specs import LIVES
+from affcli.lab import experiment
+from affcli.lab.definition import experiment_file, experiment_of
+from affcli.store import open_store
+from tests.lab.quick import now
+from tests.readmes import ROOT
+
+FILES = sorted((ROOT / "experiments").rglob("*.toml"))
+SHORT = {"minutes": 2, "settings": {"trial": {"max_steps": 3}}}
+
+
+def test_each_folder_with_robots_has_its_file() -> None:
+    whole = {path.parent.name for path in FILES if path.name == "experiment.toml"}
+    assert whole == {"camera", "extension_of_reach", "tool_adaptation"}
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}/{path.name}")
+def test_two_short_robots_live(path: Path, tmp_path: Path) -> None:
+    whole, tables = experiment_file(path), toml_file(path, "")
+    short = experiment_of({**tables, "base": {**tables.get("base", {}), **SHORT}}, "a test")
+    assert [c.name for c in short.conditions] == [c.name for c in whole.conditions]
+    with open_store(tmp_path / "short.db", create=True, write=True) as store:
+        info = experiment.begin(store, replace(short, robots=2), now)
+        assert list(experiment.run(store, replace(short, robots=2), info, 1, now)) == [0, 1, 2]
+        assert store.experiments.named(whole.name).status == "done"
+        for condition, (name, session) in zip(short.conditions, info.conditions, strict=True):
+            trials = store.trials.trials(session_id=session)
+            assert len(trials) == 2 * (16 * len(condition.tools) + 16), name
+            assert {trial.spec.robot for trial in trials} == {0, 1}
+        assert len(store.sessions.all(*LIVES)) == len(info.conditions)
+
+
+@pytest.mark.parametrize(
+    ("path", "condition", "numbers"),
+    [
+        ("extension_of_reach/experiment", "base", "extension_of_reach/results"),
+        ("extension_of_reach/friction", "half", "extension_of_reach/half_friction"),
+        ("extension_of_reach/friction", "double", "extension_of_reach/double_friction"),
+        ("camera/experiment", "camera", "camera/results"),
+    ],
+)
+def test_the_numbers_beside_a_file_are_of_its_robots(
+    path: str, condition: str, numbers: str
+) -> None:
+    what = experiment_file(ROOT / "experiments" / f"{path}.toml")
+    (own,) = (one for one in what.definition["condition"] if one["name"] == condition)
+    said = own["settings"] | ({} if own["sensor"] == "noisy" else {"sensor.kind": own["sensor"]})
+    settings = ", ".join(f"{name} = {value}" for name, value in said.items()) or "defaults"
+    measured = json.loads((ROOT / "experiments" / f"{numbers}.json").read_text())
+    ours = {"robots": what.robots, "seed": what.seed, "settings": settings}
+    assert {key: measured[key] for key in ours} == ours
