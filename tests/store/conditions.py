@@ -34,7 +34,7 @@ def stored_conditions(store: Store, robots: int = 8, conditions: int = 3) -> lis
             life = robot_record(robot, behaviors=60, seed=7)
             learned = tuple((run, steps, 5.25 * len(steps)) for run, steps, _ in life.learned)
             tested = tuple(
-                replace(one, trial=_ended(one.trial, condition, robot)) for one in life.tested
+                one._replace(trial=_ended(one.trial, condition, robot)) for one in life.tested
             )
             lived = replace(life, learned=learned, tested=tested)
             assert store.sessions.save_robot({session: VERSIONS}, lived, NOW)
