@@ -13,14 +13,12 @@ A stored run keeps only what differs from the defaults number 1 (`Settings.diffe
 """
 
 import difflib
-import re
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
-from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
+from affcli.bounded import file_bytes, toml_value
 from affcli.core.babbling_box import BabblingSettings
 from affcli.core.observation import SensorKind
 from affcli.core.setting import LARGEST, Setting, Value, settings_of
@@ -52,15 +50,8 @@ ORDERED = (
 )
 """Settings of which the first must be less than the second."""
 
-LARGEST_FILE = 1_000_000
-"""Bytes of a file of settings; all of them take some 2,000."""
-DEEPEST = 4
-"""Dots in a key, and lists and tables in one another, in a file of settings; two would do."""
-_TEXT_OR_REMARK = re.compile(
-    r'"""(?:\\.|[^\\])*?"""|' + r"'''.*?'''|" + r'"(?:\\.|[^"\\\n])*"|' + r"'[^'\n]*'|#[^\n]*",
-    re.DOTALL,
-)
-_LONG_KEY = re.compile(r"\.(?:[ \t]*+[\w-]*+[ \t]*+\.){" + str(DEEPEST) + "}")
+LONGEST_NAME = 100
+"""Letters of the name of a colour."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -251,6 +242,8 @@ def _color(name: str, value: object, source: str) -> ColorClass:
     place = f"{source}: {shown}"
     if not isinstance(value, dict) or not set(value) <= {"rgb", "height"} or "rgb" not in value:
         raise BadInputError(f"{source}: [{shown}] must hold rgb = [red, green, blue], and height")
+    if len(name) > LONGEST_NAME:
+        raise BadInputError(f"{place}: more than {LONGEST_NAME} letters; name it shorter")
     rgb = value["rgb"]
     numbers = [n for n in rgb if isinstance(n, int | float)] if isinstance(rgb, list) else []
     if len(numbers) != 3 or rgb != numbers or any(isinstance(n, bool) for n in numbers):
@@ -351,19 +344,9 @@ def _change(change: str) -> dict[str, dict[str, Any]]:
 def toml_file(path: Path, source: str) -> dict[str, Any]:
     """Return what a TOML file holds; BadInputError, quoting `source`, when it cannot be read.
 
-    No file that grows when it is read gets further than this: a million bytes, four levels deep.
+    No file that grows when it is read gets further than this: see `file_bytes`.
     """
-    try:
-        with path.open("rb") as file:
-            data = file.read(LARGEST_FILE + 1)
-    except OSError as error:
-        raise BadInputError(
-            f"{source}: {error.strerror}; give a TOML file that can be read"
-        ) from error
-    if len(data) > LARGEST_FILE:
-        raise BadInputError(
-            f"{source}: more than {LARGEST_FILE} bytes; give a TOML file of settings"
-        )
+    data = file_bytes(path, source, "give a TOML file that can be read")
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -374,18 +357,10 @@ def toml_file(path: Path, source: str) -> dict[str, Any]:
 
 
 def _toml(text: str, source: str) -> dict[str, Any]:
-    """Return what TOML text holds; BadInputError, quoting `source`, when it is none.
-
-    The depth is looked at first: tomllib takes memory as the square of the dots in one key.
-    """
-    plain = _TEXT_OR_REMARK.sub("_", text)
-    steps = (1 if bracket in "[{" else -1 for bracket in re.findall(r"[\[{\]}]", plain))
-    if max(accumulate(steps), default=0) > DEEPEST or _LONG_KEY.search(plain):
-        raise BadInputError(
-            f"{source}: not TOML of settings: more than {DEEPEST} dots in a key or lists in one "
-            "another; write [section] and key = value"
-        )
+    """Return what TOML text holds; BadInputError, quoting `source`, when it is none."""
     try:
-        return tomllib.loads(text)
+        return toml_value(text)
     except ValueError as error:
-        raise BadInputError(f"{source}: not TOML: {one_line(error)}") from error
+        raise BadInputError(
+            f"{source}: not TOML of settings: {one_line(error)}; write [section] and key = value"
+        ) from error

@@ -401,7 +401,8 @@ def test_other_encodings_are_told_what_to_do(tmp_path: Path, encoding: str) -> N
     ],
 )
 def test_depth_is_refused_before_it_takes_memory(tmp_path: Path, text: str) -> None:
-    assert "more than 4 dots in a key or lists in one another" in refused(tmp_path, text)
+    line = refused(tmp_path, text)
+    assert "more than 4 dots in a key" in line or "more than 4 lists in one another" in line
 
 
 def test_dots_in_words_and_remarks_are_no_depth(tmp_path: Path) -> None:

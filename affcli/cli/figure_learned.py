@@ -257,7 +257,8 @@ def _runs_to_draw(
     if ids:
         runs = [store.learning.run(one) for one in dict.fromkeys(ids)]
     else:
-        runs = [run for run in store.learning.runs() if not tools or run.spec.tool in tools]
+        begun = [run for run in store.learning.runs() if run.behaviors]
+        runs = [run for run in begun if not tools or run.spec.tool in tools]
     if not runs:
         reproduced = store.sessions.all(*LIVES)
         if reproduced:

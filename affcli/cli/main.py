@@ -1,5 +1,6 @@
 """One run of the ``affcli`` program: how errors, signals and the exit code leave it."""
 
+import errno
 import gc
 import sys
 from pathlib import Path
@@ -14,6 +15,8 @@ OBJECTS_BETWEEN_COLLECTIONS = 100_000
 that run for hours; importing the libraries would be searched three hundred times, which is a tenth
 of the time of `affcli learn`."""
 
+NO_ROOM_FOR_A_LIBRARY = "failed to map segment from shared object"
+"""What the loader says, in an ImportError, of a library for which there is no memory."""
 OUT_OF_MEMORY = "memory ran out; what was saved is kept; ask for less, or leave more memory free"
 
 
@@ -55,9 +58,12 @@ def main() -> int:
 
 def _ran_out_of_memory(error: BaseException | None) -> bool:
     """Tell whether memory ran out, or did and made something else go wrong."""
-    while error is not None and not isinstance(error, MemoryError):
+    while error is not None:
+        of_the_system = isinstance(error, OSError) and error.errno == errno.ENOMEM
+        if isinstance(error, MemoryError) or of_the_system or NO_ROOM_FOR_A_LIBRARY in str(error):
+            return True
         error = error.__context__
-    return error is not None
+    return False
 
 
 def _fail(message: str, code: int) -> int:

@@ -12,6 +12,8 @@ BehaviorName = NewType("BehaviorName", str)
 
 GRASP = BehaviorName("grasp")
 POSITION_WRIST = BehaviorName("position wrist")
+LONGEST_NAME, MOST_PARAMETERS = 100, 20
+"""Letters of a behavior's name, and how many parameters it has; the paper's have one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +32,9 @@ class BehaviorCall:
 
     @classmethod
     def of(cls, name: BehaviorName, params: Mapping[str, float]) -> "BehaviorCall":
-        """Build a call from a mapping, keeping its order."""
+        """Build a call from a mapping, keeping its order; ValueError when nobody could read it."""
+        if len(name) > LONGEST_NAME or len(params) > MOST_PARAMETERS:
+            raise ValueError(f"a behavior of {len(name)} letters and {len(params)} parameters")
         return cls(name, tuple(params.items()))
 
     def __getitem__(self, param: str) -> float:

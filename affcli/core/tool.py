@@ -17,6 +17,9 @@ from affcli.errors import BadInputError, one_line
 
 ToolName = NewType("ToolName", str)
 
+MOST_CORNERS = 1000
+"""Of a tool that is read; the paper's have some 20. The physics looks at all of them."""
+
 
 class Color(tuple[float, float, float]):
     """Red, green and blue, each 0 to 255."""
@@ -135,6 +138,8 @@ def tool_from_canonical(value: Any) -> Tool:
         ValueError, KeyError, TypeError: it is anything else.
     """
     red, green, blue = map(float, value["color"])
+    if sum(len(vertices) for _, vertices in value["parts"]) > MOST_CORNERS:
+        raise ValueError(f"a tool of more than {MOST_CORNERS} corners")
     parts = tuple(
         ToolPart(str(name), ConvexPolygon(tuple(Point(float(x), float(y)) for x, y in vertices)))
         for name, vertices in value["parts"]

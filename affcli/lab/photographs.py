@@ -1,9 +1,9 @@
 """A person's own pictures: calibrate the camera that took them, and find what is on the table."""
 
-import json
 from pathlib import Path
 
 from affcli import registry
+from affcli.bounded import file_bytes, json_value
 from affcli.config import Settings, load_colors
 from affcli.core.geometry import Point
 from affcli.core.tool import Color
@@ -20,8 +20,7 @@ from affcli.simulation.sensing import eye_of
 
 SHOWN = "t-hook"
 """The tool in a picture that is of no run."""
-LARGEST_FILE = 1_000_000
-"""Bytes of a file of a calibration; one of 36 markers takes some 6,000."""
+REMEDY = "give a file that `affcli camera calibrate PICTURE --out FILE` wrote"
 
 
 def eye_at(settings: Settings, seed: int) -> Eye:
@@ -111,38 +110,15 @@ def _stored_camera(path: Path) -> tuple[Camera, Capture | None]:
     Raises:
         BadInputError: it cannot be read, or is none.
     """
+    data = file_bytes(path, one_line(path), REMEDY)
     try:
-        values = _json(path)
+        values = json_value(data)
+        if not isinstance(values, dict):
+            raise TypeError("no JSON object")  # noqa: TRY301  # as all else that is none
         return Camera.from_json(values), checked_capture(values.get("capture"))
     except UnicodeDecodeError:
         what, remedy = "it is not UTF-8", "save it as UTF-8"
     except (KeyError, TypeError, ValueError, OverflowError) as error:
         missing = isinstance(error, KeyError)
-        what = f"no {one_line(error)} in it" if missing else one_line(error)
-        remedy = "make one with `affcli camera calibrate PICTURE --out FILE`"
+        what, remedy = f"no {one_line(error)} in it" if missing else one_line(error), REMEDY
     raise BadInputError(f"{one_line(path)}: not a calibration ({what}); {remedy}")
-
-
-def _json(path: Path) -> dict[str, object]:
-    """Return the object in a JSON file.
-
-    Raises:
-        BadInputError: it cannot be read.
-        ValueError: it is no JSON object.
-    """
-    try:
-        with path.open("rb") as file:
-            text = file.read(LARGEST_FILE + 1)
-    except OSError as error:
-        raise BadInputError(
-            f"{one_line(path)}: {error.strerror}; give a file that `affcli camera calibrate` wrote"
-        ) from error
-    if len(text) > LARGEST_FILE:
-        raise ValueError(f"more than {LARGEST_FILE} bytes")
-    try:
-        value = json.loads(text)
-    except RecursionError as error:
-        raise ValueError("nested too deeply") from error
-    if not isinstance(value, dict):
-        raise TypeError("no JSON object")
-    return value

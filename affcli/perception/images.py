@@ -4,12 +4,14 @@ import math
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 
 import cv2
 import numpy as np
 from PIL import Image, UnidentifiedImageError
 
+from affcli.bounded import file_bytes
 from affcli.errors import BadInputError, one_line
 from affcli.perception.camera import Array
 from affcli.perception.capture import ORIENTATION, UPRIGHT, Capture, capture_of
@@ -17,10 +19,17 @@ from affcli.perception.rendering import Picture
 
 FORMATS = ("PNG", "JPEG")
 MOST_PIXELS = 25_000_000
-TOO_MANY = f"too many pixels; make it smaller than {MOST_PIXELS // 1_000_000} megapixels"
+REMEDY = "give a PNG or JPEG picture"
+TOO_MANY = "too many pixels; make it smaller than 25 megapixels, or a drawing than 12"
 ENOUGH_PIXELS = 3_000_000
 LEAST_SIDE = 32
 """Pixels; nothing could be found in a smaller picture."""
+PIXELS_A_BYTE = 12
+"""A photograph has fewer; more, and more than `ENOUGH_FLAT`, are there to fill the memory."""
+ENOUGH_FLAT = 12_000_000
+START_OF_SCAN = b"\xff\xda"
+MOST_SCANS = 64
+"""Times that a JPEG goes over its pixels; cameras and programs write some ten."""
 LARGEST_FILE = 200_000_000
 """Bytes; so many pixels of 16 bits take less without any compression."""
 TURNS: dict[int, Callable[[Picture], Picture]] = {
@@ -71,10 +80,9 @@ def read_photograph(path: Path) -> Photograph:
         with warnings.catch_warnings():
             # Pillow warns of what it mends and of bombs; sizes are checked before unpacking.
             warnings.simplefilter("ignore")
-            if path.stat().st_size > LARGEST_FILE:
-                raise BadInputError(f"{shown}: more than {LARGEST_FILE} bytes; save it smaller")
-            with Image.open(path, formats=FORMATS) as image:
-                _require_size(image, shown)
+            data = file_bytes(path, shown, REMEDY, LARGEST_FILE)
+            with Image.open(BytesIO(data), formats=FORMATS) as image:
+                _require_size(image, data, shown)
                 rgb = np.asarray(_eight_bits(image).convert("RGB"), np.uint8)
                 capture = capture_of(image)
     except Image.DecompressionBombError as error:
@@ -84,9 +92,7 @@ def read_photograph(path: Path) -> Photograph:
             f"{shown}: not a PNG or JPEG picture that can be read; save it as one"
         ) from error
     except OSError as error:
-        raise BadInputError(
-            f"{shown}: {one_line(error.strerror or error)}; give a PNG or JPEG picture"
-        ) from error
+        raise BadInputError(f"{shown}: {one_line(error.strerror or error)}; {REMEDY}") from error
     except (SyntaxError, ValueError) as error:  # what Pillow raises for damaged chunks
         raise BadInputError(f"{shown}: damaged: {one_line(error)}; save it again") from error
     return Photograph(np.ascontiguousarray(rgb[:, :, ::-1]), capture)
@@ -112,11 +118,14 @@ def unshrunk(pixels: Array, side: int) -> Array:
     return whole
 
 
-def _require_size(image: Image.Image, shown: str) -> None:
-    """Refuse a picture that is too large or too small."""
+def _require_size(image: Image.Image, data: bytes, shown: str) -> None:
+    """Refuse a picture that is too large or too small, or would take very long to unpack."""
     width, height = image.size
-    if width * height > MOST_PIXELS:
+    most = min(MOST_PIXELS, max(ENOUGH_FLAT, PIXELS_A_BYTE * len(data)))
+    if width * height > most:
         raise BadInputError(f"{shown}: {width}x{height} pixels: {TOO_MANY}")
+    if data.count(START_OF_SCAN) > MOST_SCANS and image.format == "JPEG":
+        raise BadInputError(f"{shown}: in more than {MOST_SCANS} scans; save it again")
     if min(width, height) < LEAST_SIDE:
         raise BadInputError(
             f"{shown}: {width}x{height} pixels are too few; give a picture of at least "

@@ -66,8 +66,8 @@ def _fill(part: Path, driver: Waiting, copy: Path) -> None:
         verdict = target.execute("PRAGMA integrity_check(1)").fetchone()[0]
     if verdict != "ok":
         raise DatabaseError(
-            f"{one_line(driver.path)}: damaged ({one_line(verdict)}), so no copy was made; restore "
-            "an older one"
+            f"{one_line(driver.path)}: damaged ({one_line(verdict)}), so no copy was made; "
+            "restore an older one"
         )
     _synced(part)
 

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from affcli.bounded import LARGEST_VALUE
 from affcli.errors import DatabaseError, one_line
 from affcli.store.waiting import PRIMARY
 
@@ -34,6 +35,8 @@ REMEDIES = {
     sqlite3.SQLITE_IOERR: "the disk refused to read or write; what was saved before is kept; look "
     "at free space, quotas and the disk's health, then run the command again",
     sqlite3.SQLITE_CORRUPT: "damaged; restore a copy of the file, or name another with --db",
+    sqlite3.SQLITE_TOOBIG: f"holds a value of more than {LARGEST_VALUE} bytes, which affcli did "
+    "not write; restore a copy of the file",
     sqlite3.SQLITE_NOTADB: "not a SQLite database; name another file with --db",
     sqlite3.SQLITE_CONSTRAINT_UNIQUE: CLASH,
     sqlite3.SQLITE_CONSTRAINT_PRIMARYKEY: CLASH,

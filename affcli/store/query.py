@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
 
+from affcli.bounded import LARGEST_VALUE
 from affcli.core.row_filter import Cell
 from affcli.errors import BadInputError, one_line
 from affcli.store.database_file import (
@@ -23,16 +24,12 @@ from affcli.store.waiting import LONGEST_WAIT, PRIMARY, Waiting
 
 MAX_ROWS = 10_000
 MAX_SECONDS = 2.0
-LARGEST_VALUE = 100_000
-"""Bytes of one value or one row; the longest that affcli writes is some 3,000. Inside a function
-SQLite looks at no clock, and instr() takes 11 s on 1 MB, 0.1 s on 100 kB."""
 LARGEST_RESULT = 64_000_000
 """Bytes of text and blobs in the whole result."""
 OPCODES_BETWEEN_LOOKS = 100
 """How many steps of SQLite's machine pass between two looks at the clock."""
 
 LIMITS = {
-    sqlite3.SQLITE_LIMIT_LENGTH: LARGEST_VALUE,
     sqlite3.SQLITE_LIMIT_SQL_LENGTH: 100_000,
     sqlite3.SQLITE_LIMIT_LIKE_PATTERN_LENGTH: 500,
     sqlite3.SQLITE_LIMIT_EXPR_DEPTH: 200,

@@ -1,11 +1,11 @@
 """From rows to records. A value is checked once, here, where it is read."""
 
-import json
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import lru_cache
 from typing import Any, cast
 
+from affcli.bounded import json_value
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.behavior import BehaviorCall, BehaviorName, Repertoire, repertoire_from_json
@@ -34,6 +34,9 @@ Columns = Mapping[str, Any]
 """A row by the names of its columns."""
 
 
+UNREADABLE = (ValueError, TypeError, KeyError, AttributeError, OverflowError, BadInputError)
+
+
 @contextmanager
 def reading_what_was_written(place: str) -> Iterator[None]:
     """Say so when a value in the database is one that no version of affcli writes.
@@ -43,10 +46,7 @@ def reading_what_was_written(place: str) -> Iterator[None]:
     """
     try:
         yield
-    except (
-        *(ValueError, TypeError, KeyError, AttributeError, OverflowError, BadInputError),
-        RecursionError,  # JSON nested a thousand deep
-    ) as error:
+    except UNREADABLE as error:
         raise DatabaseError(
             f"{place} holds a value that affcli did not write; restore a copy of the database"
         ) from error
@@ -55,13 +55,13 @@ def reading_what_was_written(place: str) -> Iterator[None]:
 @lru_cache(maxsize=1024)
 def behavior_call(name: str, params: str) -> BehaviorCall:
     """Return the call that a name and the JSON of its parameters stand for."""
-    return BehaviorCall.of(BehaviorName(name), {k: float(v) for k, v in json.loads(params).items()})
+    return BehaviorCall.of(BehaviorName(name), {k: float(v) for k, v in json_value(params).items()})
 
 
 @lru_cache(maxsize=256)
 def repertoire(text: str) -> Repertoire:
     """Return the behaviors of a learning run."""
-    return repertoire_from_json(json.loads(text))
+    return repertoire_from_json(json_value(text))
 
 
 @lru_cache(maxsize=256)
@@ -73,14 +73,14 @@ def component(text: str) -> Component:
 @lru_cache(maxsize=256)
 def tool(name: str, definition: str | None) -> Tool:
     """Return a tool by its name and its value; one without a shape where that is not stored."""
-    return unknown_tool(name) if definition is None else tool_from_canonical(json.loads(definition))
+    return unknown_tool(name) if definition is None else tool_from_canonical(json_value(definition))
 
 
 def reasons(text: str) -> Reasons:
     """Return what a planner went by; what a newer affcli says beside that is left out."""
     return tuple(
         Reason(**{name: one[name] for name in Reason._fields if name in one})
-        for one in json.loads(text)
+        for one in json_value(text)
     )
 
 
@@ -151,7 +151,7 @@ def _at_most(value: float | None, most: float) -> Any:
 
 def _parts(row: Columns) -> dict[str, Any]:
     """Return the parts that the specs of sessions and learning runs share."""
-    dict(json.loads(row["settings"]))  # a mapping, whatever its keys
+    dict(json_value(row["settings"]))  # a mapping, whatever its keys
     return {
         "seed": row["seed"],
         "settings": row["settings"],
@@ -183,8 +183,8 @@ def learning_run(row: Columns) -> LearningRunInfo:
     with reading_what_was_written(f"learning run {row['id']}"):
         return LearningRunInfo(
             spec=learning_spec(row),
-            versions=dict(json.loads(row["versions"])),
-            checkpoint=None if row["checkpoint"] is None else dict(json.loads(row["checkpoint"])),
+            versions=dict(json_value(row["versions"])),
+            checkpoint=None if row["checkpoint"] is None else dict(json_value(row["checkpoint"])),
             kept=Keep(row["kept"]),
             **{name: row[name] for name in names},
         )
@@ -200,7 +200,7 @@ def session(row: Columns) -> SessionInfo:
             task_set=row["task_set"],
             **_parts(row),
         )
-        versions = dict(json.loads(row["versions"]))
+        versions = dict(json_value(row["versions"]))
         own = (row[name] for name in ("status", "experiment_id", "condition"))
         return SessionInfo(row["id"], spec, versions, *own)
 
@@ -209,8 +209,8 @@ def experiment(row: Columns, sessions: Iterable[Columns]) -> ExperimentInfo:
     """Return an experiment, from its row and those of its sessions in the order of conditions."""
     with reading_what_was_written(f"experiment {row['id']}"):
         return ExperimentInfo(
-            definition=dict(json.loads(row["definition"])),
-            versions=dict(json.loads(row["versions"])),
+            definition=dict(json_value(row["definition"])),
+            versions=dict(json_value(row["versions"])),
             conditions=tuple((one["condition"], one["id"]) for one in sessions),
             **{name: row[name] for name in ("id", "name", "question", "key", "status")},
         )
@@ -244,7 +244,7 @@ def trial(row: Columns, learned: Mapping[int, LearningSpec]) -> TrialInfo:
             run_id=row["learning_run_id"],
             spec=spec,
             learned=learned[row["learning_run_id"]],
-            versions=dict(json.loads(row["versions"])),
+            versions=dict(json_value(row["versions"])),
             outcome=None if row["outcome"] is None else Outcome(row["outcome"]),
             steps=row["steps"],
             robot_seconds=row["robot_seconds"],

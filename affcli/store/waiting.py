@@ -8,6 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from affcli.bounded import LARGEST_VALUE
 from affcli.errors import DatabaseError, one_line
 
 LONGEST_WAIT = 90.0
@@ -95,6 +96,7 @@ def connected(path: Path, mode: str, longest: float) -> Waiting:
     uri = f"{path.absolute().as_uri()}?mode={mode}"
     driver = sqlite3.connect(uri, uri=True, timeout=ATTEMPT, isolation_level=None, factory=Waiting)
     driver.path, driver.longest = path, longest
+    driver.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST_VALUE)
     return driver
 
 

@@ -246,4 +246,4 @@ def test_a_file_too_large_for_a_picture_is_not_read(seen: Path, tmp_path: Path) 
     with path.open("r+b") as file:
         file.truncate(2_000_000_000)
     line = refused(4, "camera", "calibrate", "pattern.png", cwd=tmp_path)
-    assert "pattern.png: more than 200000000 bytes; save it smaller" in line
+    assert "pattern.png: more than 200000000 bytes; give a PNG or JPEG picture" in line

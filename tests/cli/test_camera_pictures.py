@@ -280,7 +280,7 @@ PATHS: dict[str, tuple[Arg, str]] = {
     "below a file": ("file/p.png", "file/p.png: Not a directory; give"),
     "no name": ("", ".: Is a directory"),
     "an empty device": ("/dev/null", "/dev/null: not a PNG or JPEG picture"),
-    "without end": ("/dev/zero", "/dev/zero: not a PNG or JPEG picture"),
+    "without end": ("/dev/zero", "/dev/zero: more than 200000000 bytes"),
     "escape sequence": ("\x1b[31mred.png", "\\x1b[31mred.png: No such file"),
     "markup": ("[/].png", "[/].png: No such file"),
     "no character at all": (b"\xff.png", "\\udcff.png: No such file"),

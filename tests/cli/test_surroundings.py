@@ -58,15 +58,24 @@ def test_a_cache_that_cannot_be_made_is_not_spoken_of(tmp_path: Path) -> None:
     assert names_in(tmp_path) == ["a.pdf"]
 
 
-@pytest.mark.parametrize("error", [MemoryError(), ValueError("what came of it")], ids=repr)
+@pytest.mark.parametrize(
+    "error",
+    [
+        *(MemoryError(), ValueError("what came of it"), OSError(12, "Cannot allocate memory")),
+        ImportError("x.so: failed to map segment from shared object"),
+    ],
+    ids=repr,
+)
 def test_too_little_memory_is_one_line(
     error: Exception, empty: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def ask(*_: object, **__: object) -> None:
-        try:
-            raise MemoryError  # noqa: TRY301
-        except MemoryError:
-            raise error  # noqa: B904  # as libraries do while they close what is open
+        if isinstance(error, ValueError):
+            try:
+                bytes(1 << 62)
+            except MemoryError:
+                raise error  # noqa: B904  # as libraries do while they close what is open
+        raise error
 
     monkeypatch.setattr("affcli.store.health.one_state", ask)
     assert "memory ran out; what was saved is kept; ask for less" in refused(

@@ -7,9 +7,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from affcli.bounded import LARGEST_VALUE
 from affcli.errors import BadInputError
 from affcli.store import open_store, run_sql
-from affcli.store.query import LARGEST_RESULT, LARGEST_VALUE
+from affcli.store.query import LARGEST_RESULT
 from tests.store.records import learned
 
 WRITES = [
