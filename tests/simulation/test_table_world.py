@@ -9,10 +9,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from affcli.behaviors.moving import EXTEND_ARM
+from affcli.behaviors.positioning import position_wrist
 from affcli.config import Settings
-from affcli.core.behavior import BehaviorCall
-from affcli.core.geometry import Pose
+from affcli.core.behavior import (
+    BehaviorCall,
+    BehaviorName,
+    ExecutionStatus,
+    ExploratoryBehavior,
+)
+from affcli.core.geometry import Point, Pose
 from affcli.core.identity import stream_number
+from affcli.core.motion import Carry, Segment, Slide, Wait
+from affcli.core.observation import Observation
+from affcli.core.records import StepScene
+from affcli.core.scene import Scene
 from affcli.core.specs import VerificationSpec
 from affcli.simulation.table_world import TableSetting, TableWorld
 from affcli.simulation.tools.paper import TOOL_PARTS
@@ -155,3 +165,71 @@ def test_tasks_are_those_of_a_set_that_the_table_has() -> None:
     assert len(WORLD.tasks("extension-of-reach")) == 16
     with pytest.raises(KeyError, match="juggling"):
         WORLD.tasks("juggling")
+
+
+SWEEP = BehaviorCall.of(BehaviorName("sweep"), {})
+
+
+def sweeping(*segments: Segment) -> TableSetting:
+    """Return a setting in which the robot has a behavior of these segments, and its tool."""
+    spec = replace(LEARNED, repertoire=(ExploratoryBehavior(SWEEP, segments),))
+    setting = TableWorld(EXACT).learning(spec, laid_out=False)
+    setting.robot.execute(setting.binding, None)
+    setting.table.wrist, setting.table.attractor = Pose(1.0, 14.0), Pose(12.0, 30.0)
+    return setting
+
+
+def test_the_segments_of_a_behavior_are_executed_one_after_the_other() -> None:
+    setting = sweeping(Slide(-2.0, 0.0), Carry(Pose(3.0, 15.0, 0.5)), Slide(0.0, 1.0), Wait(2.0))
+    done = setting.robot.execute(SWEEP, None)
+    assert done.status is ExecutionStatus.DONE
+    assert (done.wrist_start, done.wrist_end) == (Pose(1.0, 14.0), Pose(3.0, 16.0, 0.5))
+
+
+def test_after_a_segment_that_did_not_end_as_asked_only_time_goes_on() -> None:
+    waited = 2.0
+    setting = sweeping(Slide(0.0, 30.0), Carry(Pose(3.0, 15.0)), Slide(-1.0, 0.0), Wait(waited))
+    done = setting.robot.execute(SWEEP, None)
+    alone = sweeping(Slide(0.0, 30.0)).robot.execute(SWEEP, None)
+    assert done.status is alone.status is ExecutionStatus.TRUNCATED
+    assert done.wrist_end == alone.wrist_end
+    assert done.duration == pytest.approx(alone.duration + waited)
+
+
+@pytest.mark.parametrize("blocked", [False, True])
+def test_a_step_done_again_looks_as_it_did(blocked: bool) -> None:
+    """From where the wrist was before it, by way of where the row says, to where all ended."""
+    setting = TableWorld(EXACT).trial(trial_spec(LEARNED, goal="2"), LEARNED)
+    robot, table = setting.robot, setting.table
+    robot.execute(setting.binding, None)
+    table.wrist, table.attractor = Pose(6.0, 14.0), Pose(0.0, 20.0 if blocked else 31.0)
+    before, push = table.wrist, BehaviorCall.of(EXTEND_ARM, {"offset_distance": 5.0})
+    target = Point(0.0, 14.0)
+    aim = Observation(*target, *[0.0] * 10)
+    shown: list[Scene] = []
+    setting.film(lambda clock, scene: shown.append(scene))
+    start = table.attractor
+    placed = robot.execute(position_wrist(Point(0.0, 0.0)), aim)
+    assert (placed.status is ExecutionStatus.BLOCKED) is blocked
+    if not blocked:
+        robot.execute(push, aim)
+    setting.film(None)
+    step = StepScene(
+        *("a step", (1, 1), LEARNED, LEARNED.tool, LEARNED.held, table.goal, 0, 0, before),
+        *(before if blocked else placed.wrist_end, table.wrist),
+        *(start.point, table.attractor.point, setting.binding, push, blocked),
+    )
+    again: list[Scene] = []
+    assert TableWorld(EXACT).step_again(step, lambda clock, scene: again.append(scene))
+    assert again == shown
+    assert (again[0].wrist, again[0].goal) == (before, table.goal)
+    assert again[-1].attractor == table.attractor
+
+
+def test_a_snapshot_of_what_cannot_be_is_refused() -> None:
+    setting = setting_with("stick")
+    snapshot = setting.snapshot()
+    for name in ("wrist", "attractor"):
+        far = snapshot | {name: [0.0, 2e6, 0.0]}
+        with pytest.raises(ValueError, match="nothing is that far from the table"):
+            setting.restore(far)
