@@ -64,8 +64,7 @@ class Difference:
             cell,
             len(pairs),
             trials,
-            fmean(before for before, _ in pairs),
-            fmean(after for _, after in pairs),
+            *map(fmean, zip(*pairs, strict=True)),
             mean_interval(differences, -trials, trials),
             fmean(differences) / spread if spread else None,
             better,
@@ -101,6 +100,8 @@ class Comparison:
         cells: by tool, goal or what else tells trials apart; none where nothing does.
         same: cells in which all robots agree: nothing to test, so nothing to correct for.
         left_out: by condition the robots that have not as many trials in both; all others pair.
+        unshared: by condition the cells that only it or the one compared against has: nowhere in
+            the differences.
     """
 
     against: ConditionCounts
@@ -109,6 +110,7 @@ class Comparison:
     cells: tuple[Difference, ...]
     same: tuple[Difference, ...]
     left_out: Mapping[str, tuple[int, ...]]
+    unshared: Mapping[str, tuple[Cell, ...]]
 
     @classmethod
     def of(cls, against: ConditionCounts, others: Sequence[ConditionCounts]) -> "Comparison":
@@ -116,18 +118,21 @@ class Comparison:
         totals: list[Difference] = []
         cells: list[Difference] = []
         left_out: dict[str, tuple[int, ...]] = {}
+        unshared: dict[str, tuple[Cell, ...]] = {}
         for other in others:
             if not in_common(against, other):
                 raise ValueError(f"{against.name} and {other.name} have no robot in common")
-            found, unpaired = _compared(against.cells, other)
+            before, after = _shared(against.cells, other.cells), _shared(other.cells, against.cells)
+            found, unpaired = _compared(other.name, before, after)
             cells += found
-            whole, without = _compared(
-                summed(against.cells), replace(other, cells=summed(other.cells))
-            )
+            whole, without = _compared(other.name, summed(before), summed(after))
             totals += whole
             missing = unpaired | without | (against.robots ^ other.robots)
             if missing:
                 left_out[other.name] = tuple(sorted(missing))
+            alone = [*against.cells, *other.cells]
+            if len(before) < len(dict.fromkeys(alone)):
+                unshared[other.name] = tuple(cell for cell in alone if cell not in before)
         if all(cell == _whole(cell) for cell in against.cells):
             cells = []
         tested = [one for one in cells if not one.agree]
@@ -138,6 +143,7 @@ class Comparison:
             holm(tested),
             tuple(one for one in cells if one.agree),
             left_out,
+            unshared,
         )
 
 
@@ -147,20 +153,25 @@ def in_common(one: ConditionCounts, other: ConditionCounts) -> frozenset[int]:
     return one.robots & other.robots if alike else frozenset()
 
 
+def _shared(own: Mapping[Cell, Counts], others: Mapping[Cell, Counts]) -> dict[Cell, Counts]:
+    """Return those of a condition's cells that another has too."""
+    return {cell: counts for cell, counts in own.items() if cell in others}
+
+
 def _compared(
-    before: Mapping[Cell, Counts], other: ConditionCounts
+    condition: str, before: Mapping[Cell, Counts], after: Mapping[Cell, Counts]
 ) -> tuple[list[Difference], set[int]]:
-    """Return the differences of the cells that both have, and the robots that do not pair."""
+    """Return the differences in the cells of two conditions, and the robots that do not pair."""
     found: list[Difference] = []
     unpaired: set[int] = set()
     for cell, own in before.items():
-        theirs = other.cells.get(cell, {})
+        theirs = after[cell]
         both = [robot for robot in sorted(own) if own[robot][0] == theirs.get(robot, (0, 0))[0]]
         unpaired |= (own.keys() | theirs.keys()) - set(both)
         if both:
             pairs = [(own[robot][1], theirs[robot][1]) for robot in both]
-            trials = fmean(own[robot][0] for robot in both)
-            found.append(Difference.of(other.name, cell, pairs, trials))
+            trials = fmean([own[robot][0] for robot in both])
+            found.append(Difference.of(condition, cell, pairs, trials))
     return found, unpaired
 
 

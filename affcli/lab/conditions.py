@@ -72,7 +72,14 @@ def compared(
                 f"{base.name} and {other.name} have no robot in common: they are {why}; give both "
                 "the same --seed"
             )
-    return Comparison.of(base, others)
+    result = Comparison.of(base, others)
+    for other in others:
+        if not any(one.condition == other.name for one in result.totals):
+            raise UsageError(
+                f"{base.name} and {other.name} have no trials in common; name sessions with the "
+                "same tools and tasks"
+            )
+    return result
 
 
 def _first(conditions: Sequence[Condition], first: int) -> list[Condition]:

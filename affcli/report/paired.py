@@ -93,6 +93,9 @@ def _conditions_table(result: Comparison) -> Sheet:
     tests = [len(result.totals)] + [len(result.cells)] * bool(result.cells)
     notes = [note.format(tests=" and ".join(map(str, tests))) for note in METHOD]
     notes += ["left out: not in both, or not with as many trials"] * left_out
+    for name, cells in result.unshared.items():
+        words = "; ".join(map(whole_words, cells))
+        notes.append(f"in {name} alone or in {result.against.name} alone: {words}")
     table = Sheet(columns, left=columns, title=f"Conditions, seed {seed}", caption="; ".join(notes))
     for one in (result.against, *result.others):
         missing = (ranges(result.left_out.get(one.name, ())),) if left_out else ()
@@ -190,6 +193,9 @@ def comparison_json(result: Comparison) -> dict[str, Any]:
         "cells": rows[totals:cells],
         "same": rows[cells:],
         "left_out": {name: list(robots) for name, robots in result.left_out.items()},
+        "unshared": {
+            name: [cell._asdict() for cell in cells] for name, cells in result.unshared.items()
+        },
     }
 
 

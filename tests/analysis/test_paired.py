@@ -148,6 +148,17 @@ def test_without_a_robot_in_common_nothing_is_compared(other: ConditionCounts) -
         Comparison.of(condition("base", [1, 2]), [other])
 
 
+def test_cells_that_only_one_condition_has_are_named_and_not_summed() -> None:
+    base, other = condition("base", [1] * 6, [2] * 6), condition("other", [3] * 6)
+    result = Comparison.of(base, [other, condition("third", [1] * 6, [2] * 6, [4] * 6)])
+    assert result.unshared == {"other": (HOOK,), "third": (BROKEN,)}
+    assert [(d.condition, d.cell, d.trials, d.mean) for d in result.totals] == [
+        ("other", Cell(REACH, TASK_SET), 4.0, 2.0),
+        ("third", Cell(REACH, TASK_SET), 8.0, 0.0),
+    ]
+    assert result.left_out == {}
+
+
 def test_by_protocol_there_are_totals_alone() -> None:
     base, other = condition("base", [1, 2, 3]), condition("other", [2, 2, 3])
     whole = [replace(one, cells=summed(one.cells)) for one in (base, other)]
