@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, NoReturn
 
 from affcli import registry
 from affcli.core.affordance_table import AffordanceTable
@@ -32,16 +32,18 @@ from affcli.core.specs import (
     TrialRecord,
 )
 from affcli.core.world import World
-from affcli.errors import UsageError, one_line
+from affcli.errors import AffcliError, UsageError, one_line
 from affcli.lab.learning_run import LearningRun
 from affcli.lab.run_parts import RunParts, settings_of, world_of
 from affcli.lab.trials import trial_specs, whole_trial
 from affcli.lab.versions import versions
-from affcli.lab.workers import in_order
+from affcli.lab.workers import Failed, in_order
 from affcli.store import PackedRobot, Store, open_store, pack_robot
 
 ADAPTATION = "adaptation"
 """Among the tasks of a condition: the paper's tool breaks, and does `ADAPTATION_TASKS` (§7.2)."""
+FAIL_AT_ONCE = 3
+"""When so many robots at the beginning fail, and none lives, all of them would."""
 ADAPTATION_TASKS = registry.DEFAULTS["task"]
 
 
@@ -245,16 +247,42 @@ def conduct(
 
     Yields:
         How many of these robots are saved: at the beginning, and each time one more is.
+
+    Raises:
+        AffcliError, or what a robot raised: robots failed, the same way each time they were tried.
+            All others are saved, unless the first three failed.
     """
     made_with = dict(zip(sessions, map(_made_with, experiment.conditions), strict=True))
     there = store.sessions.saved_robots(sessions[0])
     missing = [robot for robot in robots if robot not in there]
     saved = len(robots) - len(missing)
     yield saved
-    for life in in_order(partial(_packed_life, experiment, keep), missing, workers, warn):
-        store.sessions.save_robot(made_with, life, now())
-        saved += 1
-        yield saved
+    failed: dict[int, Exception] = {}
+    lives = in_order(partial(_packed_life, experiment, keep), missing, workers, warn)
+    for robot, life in zip(missing, lives, strict=True):
+        if isinstance(life, Failed):
+            failed[robot] = life.error
+            if list(failed) == missing[:FAIL_AT_ONCE]:
+                break
+        else:
+            store.sessions.save_robot(made_with, life, now())
+            saved += 1
+            yield saved
+    if failed:
+        _raise(failed)
+
+
+def _raise(failed: Mapping[int, Exception]) -> NoReturn:
+    """Say which robots failed and why the first did; a bug keeps its traceback."""
+    (robot, error), *others = failed.items()
+    more = f" (and {len(others)} more)" if others else ""
+    if isinstance(error, AffcliError):
+        raise type(error)(
+            f"robot {robot}{more}: {error}; what the others did is saved, and the same command "
+            "tries again"
+        ) from error
+    error.add_note(f"robot {robot}{more}")
+    raise error
 
 
 def run(

@@ -132,13 +132,15 @@ def learn_all(
         DatabaseError: a chunk could not be saved; the chunks before it are kept.
         UsageError: a run was deleted meanwhile.
     """
-    from affcli.lab.workers import working
+    from affcli.lab.workers import Failed, working
 
     left = [run for run in runs if run.status != "done"]
     with working(next_chunk, min(workers, len(left)), warn) as chunks_of:
         while left:
             saved = []
             for run, chunk in zip(left, chunks_of(left), strict=True):
+                if isinstance(chunk, Failed):
+                    raise chunk.error
                 store.learning.append(
                     run.id,
                     run.behaviors,

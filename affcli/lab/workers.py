@@ -9,8 +9,10 @@ import os
 import subprocess
 import sys
 import traceback
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import partial
 from multiprocessing.connection import Connection, Pipe, wait
 from queue import SimpleQueue
@@ -27,30 +29,43 @@ BEGIN = (
 """What a worker runs: it finds affcli where this process found it."""
 SPARE_FILES = 8
 """Files that this process must be able to open beside its pipes, for its database for one."""
+DIED = "its worker process died ten times, perhaps memory ran out; give fewer --workers"
 GONE = (EOFError, ConnectionError)
 """What a pipe raises when the process at its other end has ended."""
+
+TRIES, LOSSES = 3, 10
+"""How often a task is tried that raises, and how often one whose worker dies, before it failed."""
 
 T = TypeVar("T")
 R = TypeVar("R")
 
 
+@dataclass(frozen=True, slots=True)
+class Failed:
+    """What stands for the answer of a task that failed, with the error of the last try."""
+
+    error: Exception
+
+
 @contextmanager
 def working(
     work: Callable[[T], R], workers: int, warn: Callable[[str], object]
-) -> Iterator[Callable[[Sequence[T]], Iterator[R]]]:
+) -> Iterator[Callable[[Sequence[T]], Iterator[R | Failed]]]:
     """Give what yields the answer to each of some tasks, in their order.
 
     Computed by so many processes, or else in this one. No more than a few answers wait at any time,
-    so memory stays flat however many tasks.
+    so memory stays flat however many tasks. A worker that dies, for which memory ran out for one,
+    is replaced, and its task done again: that it died is no fault of the others' tasks, nor one of
+    the errors that the work may raise.
 
     Args:
         work: what is done with a task; it, tasks and answers can be pickled.
         workers: processes; 1 does everything in this one.
-        warn: is told, in one line, that the processes cannot be started and this one does it all.
+        warn: is told, in one line, that the processes cannot be started and this one does it all;
+            and that one of them died.
 
     Raises:
-        AffcliError: a worker process died.
-        Exception: what `work` raised.
+        AffcliError: worker processes died, and none can be started in their place.
     """
     pool: list[_Worker] = []
     try:
@@ -58,7 +73,10 @@ def working(
         if why:
             _end(pool)
             warn(f"{workers} workers cannot be started ({why}); going on as with --workers 1")
-        yield partial(_answers, pool) if pool else partial(map, work)
+        if pool:
+            yield lambda tasks: _Pool(pool, work, tasks, warn).answers()
+        else:
+            yield partial(map, partial(_tried, work))
     finally:
         # Also when nobody wants more answers: those begun might take long.
         _end(pool)
@@ -66,10 +84,22 @@ def working(
 
 def in_order(
     work: Callable[[T], R], tasks: Sequence[T], workers: int, warn: Callable[[str], object]
-) -> Iterator[R]:
+) -> Iterator[R | Failed]:
     """Yield what `work` gives for each task, as `working` does, once."""
     with working(work, min(workers, len(tasks)), warn) as answers:
         yield from answers(tasks)
+
+
+def _tried(work: Callable[[T], R], task: T) -> R | Failed:
+    """Do a task in this process, more than once if it raises."""
+    tries = 0
+    while True:
+        try:
+            return work(task)
+        except Exception as error:  # noqa: BLE001  # whoever wants the answer judges it
+            tries += 1
+            if tries == TRIES:
+                return Failed(error)
 
 
 def start_fault(workers: int) -> str:
@@ -124,36 +154,96 @@ def _start(pool: list[_Worker], count: int, work: Callable[[Any], Any]) -> str:
     return ""
 
 
-def _answers(pool: list[_Worker], tasks: Sequence[Any]) -> Iterator[Any]:
-    """Yield the answers of started workers, in the order of the tasks."""
-    waiting: dict[int, Any] = {}
-    begun = 0
-    for number in range(len(tasks)):
-        while number not in waiting:
-            for worker in pool:
-                if worker.task is None and begun < min(len(tasks), number + 3 * len(pool)):
-                    _let(worker.pipe.send, tasks[begun])
-                    worker.task, begun = begun, begun + 1
-            busy = [worker for worker in pool if worker.task is not None]
-            ready = wait([worker.pipe for worker in busy])
-            for worker in busy:
-                if worker.pipe in ready and worker.task is not None:
-                    succeeded, answer = _let(worker.pipe.recv)
-                    if not succeeded:
-                        raise answer
-                    waiting[worker.task], worker.task = answer, None
-        yield waiting.pop(number)
+class _Pool:
+    """Started workers and the tasks that they share.
 
+    Args:
+        workers: what `_start` started; a worker that dies is replaced in it.
+        work, tasks, warn: as in `working`.
+    """
 
-def _let(transfer: Callable[..., Any], *values: object) -> Any:
-    """Send to a worker, or receive from it; AffcliError when it has died."""
-    try:
-        return transfer(*values)
-    except GONE as error:
-        raise AffcliError(
-            "a worker process died, perhaps memory ran out; what was saved is kept: run the "
-            "command again, with fewer --workers, or with --workers 1"
-        ) from error
+    def __init__(
+        self,
+        workers: list[_Worker],
+        work: Callable[[Any], Any],
+        tasks: Sequence[Any],
+        warn: Callable[[str], object],
+    ) -> None:
+        self._workers, self._work, self._tasks, self._warn = workers, work, tasks, warn
+        self._waiting: dict[int, Any] = {}
+        self._again: list[int] = []
+        self._begun = 0
+        self._raised: Counter[int] = Counter()
+        self._lost: Counter[int] = Counter()
+
+    def answers(self) -> Iterator[Any]:
+        """Yield the answers in the order of the tasks."""
+        for number in range(len(self._tasks)):
+            while number not in self._waiting:
+                most = min(len(self._tasks), number + 3 * len(self._workers))
+                for worker in list(self._workers):
+                    if worker.task is None and (self._again or self._begun < most):
+                        self._give(worker)
+                busy = [worker for worker in self._workers if worker.task is not None]
+                ready = wait([worker.pipe for worker in busy])
+                for worker in busy:
+                    if worker.pipe in ready:
+                        self._take(worker)
+            yield self._waiting.pop(number)
+
+    def _give(self, worker: _Worker) -> None:
+        """Give the next task to a worker."""
+        if self._again:
+            worker.task = self._again.pop()
+        else:
+            worker.task, self._begun = self._begun, self._begun + 1
+        try:
+            worker.pipe.send(self._tasks[worker.task])
+        except GONE:
+            self._replace(worker)
+
+    def _take(self, worker: _Worker) -> None:
+        """Take an answer from a worker, or note that it died."""
+        task = worker.task
+        if task is None:
+            return
+        try:
+            succeeded, answer = worker.pipe.recv()
+        except GONE:
+            self._replace(worker)
+            return
+        worker.task = None
+        self._raised[task] += not succeeded
+        if succeeded:
+            self._waiting[task] = answer
+        elif self._raised[task] < TRIES:
+            self._again.append(task)
+        else:
+            self._waiting[task] = Failed(answer)
+
+    def _replace(self, dead: _Worker) -> None:
+        """Start another worker in the place of one that died; its task is done again."""
+        task = dead.task
+        self._workers.remove(dead)
+        _end([dead])
+        if task is not None:
+            self._lost[task] += 1
+            if self._lost[task] < LOSSES:
+                self._again.append(task)
+            else:
+                self._waiting[task] = Failed(AffcliError(DIED))
+        self._warn("a worker process died, perhaps memory ran out; another does its work again")
+        new: list[_Worker] = []
+        why = _start(new, 1, self._work)
+        if not why:
+            self._workers += new
+            return
+        _end(new)
+        if not self._workers:
+            raise AffcliError(
+                f"all worker processes died and none can be started ({why}); what is saved is "
+                "kept: run the command again with fewer --workers, or with --workers 1"
+            )
 
 
 def _end(pool: list[_Worker]) -> None:

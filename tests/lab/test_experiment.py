@@ -10,13 +10,21 @@ import pytest
 
 from affcli.core.row_filter import RowFilter
 from affcli.core.specs import Keep, Protocol, RobotRecord
-from affcli.errors import UsageError
+from affcli.errors import SimulationDivergedError, UsageError
 from affcli.lab import experiment, reproduction
 from affcli.lab.definition import experiment_of
 from affcli.lab.experiment import Experiment, begin, estimate, one_robot, run
 from affcli.lab.reproduction import Reproduced
 from affcli.lab.table import listed_rows
-from affcli.store import Store, check, open_store, run_sql, upgrade
+from affcli.store import (
+    PackedRobot,
+    Store,
+    check,
+    open_store,
+    pack_robot,
+    run_sql,
+    upgrade,
+)
 from affcli.store.columns import COLUMNS
 from tests.lab.quick import PLANNER, now, taken
 from tests.lab.test_reproduction import contents
@@ -211,6 +219,41 @@ def test_a_reproduction_that_revision_0004_interrupted_goes_on(tmp_path: Path) -
                 every = f"select * from {table}"
                 assert run_sql(path, every).rows == run_sql(fresh.path, every).rows
     assert [finding for finding in check(path) if finding.wrong] == []
+
+
+def fail(which: frozenset[int], experiment: Experiment, keep: Keep, robot: int) -> PackedRobot:
+    """Let a robot live, unless it is one of those that fail."""
+    if robot in which:
+        raise SimulationDivergedError("too stiff; soften it")
+    return pack_robot(one_robot(experiment, robot), keep)
+
+
+def test_a_robot_that_fails_does_not_keep_the_others_from_living(
+    store: Store, another_store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    info = begin(store, WHAT, now)
+    with monkeypatch.context() as changed:
+        changed.setattr(experiment, "_packed_life", partial(fail, frozenset({1})))
+        told = run(store, WHAT, info, 1, now)
+        assert [next(told) for _ in range(3)] == [0, 1, 2]
+        words = r"^robot 1: too stiff; soften it; what the others did is saved, and the same"
+        with pytest.raises(SimulationDivergedError, match=words):
+            next(told)
+    assert store.sessions.saved_robots(info.conditions[0][1]) == {0, 2}
+    assert store.experiments.named("three").status == "running"
+    assert run_all(store) == [2, 3]
+    run_all(another_store)
+    count = "select robot, count(*), sum(steps) from trial group by robot"
+    assert run_sql(store.path, count).rows == run_sql(another_store.path, count).rows
+
+
+def test_where_the_first_robots_all_fail_the_others_are_not_tried(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    what = replace_head(robots=1000)
+    monkeypatch.setattr(experiment, "_packed_life", partial(fail, frozenset(range(1000))))
+    with pytest.raises(SimulationDivergedError, match=r"^robot 0 \(and 2 more\): too stiff"):
+        run_all(store, what)
 
 
 @pytest.mark.parametrize("keep", Keep)

@@ -7,15 +7,16 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from affcli.errors import AffcliError, SimulationDivergedError
 from affcli.lab.doctor import facts
-from affcli.lab.workers import in_order
+from affcli.lab.workers import Failed, in_order
 from affcli.store import Fact
 
 ROOTS = [math.sqrt(n) for n in range(30)]
@@ -38,6 +39,37 @@ def die(number: int) -> int:
     """Die of the third task, as a process for which there is no memory."""
     if number == 2:
         os.kill(os.getpid(), signal.SIGKILL)
+    return number
+
+
+def die_after(number: int) -> Callable[[int], int]:
+    """Return work at which every process dies, but for the first tasks."""
+    return partial(_die_from, number)
+
+
+def _die_from(first: int, number: int) -> int:
+    if number >= first:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return number
+
+
+def times(folder: Path, number: int) -> int:
+    """Return how often a task was begun, this time included."""
+    (folder / f"{number} {os.getpid()} {time.monotonic()}").touch()
+    return len(list(folder.glob(f"{number} *")))
+
+
+def die_twice(folder: Path, number: int) -> int:
+    """Die of two tasks, of each the first two times."""
+    if number in {1, 4} and times(folder, number) <= 2:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return number
+
+
+def stumble(folder: Path, number: int) -> int:
+    """Raise at one task the first two times."""
+    if number == 3 and times(folder, number) <= 2:
+        raise MemoryError
     return number
 
 
@@ -139,16 +171,52 @@ def test_workers_that_end_while_they_start_are_noticed(
     ]
 
 
-def test_a_worker_that_dies_at_its_work_is_named() -> None:
-    answers = in_order(die, range(9), 2, never)
-    with pytest.raises(AffcliError, match=r"a worker process died, .* with --workers 1"):
+@pytest.mark.parametrize("workers", [2, 3])
+def test_a_worker_that_dies_is_replaced_and_its_task_done_again(
+    workers: int, tmp_path: Path
+) -> None:
+    """It dies of two tasks, of each two times; all answers are there, in order."""
+    told: list[str] = []
+    work = partial(die_twice, tmp_path)
+    assert list(in_order(work, range(9), workers, told.append)) == list(range(9))
+    assert (
+        told == ["a worker process died, perhaps memory ran out; another does its work again"] * 4
+    )
+
+
+def test_a_task_of_which_workers_always_die_fails_and_the_others_do_not() -> None:
+    told: list[str] = []
+    answers = list(in_order(die, range(6), 2, told.append))
+    failed = answers.pop(2)
+    assert answers == [0, 1, 3, 4, 5]
+    assert isinstance(failed, Failed)
+    assert "its worker process died ten times, perhaps memory ran out" in str(failed.error)
+    assert len(told) == 10
+
+
+def test_with_no_worker_left_it_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    answers = in_order(die_after(2), range(9), 2, str)
+    assert next(answers) == 0
+    monkeypatch.setattr(sys, "executable", "/bin/false")
+    with pytest.raises(AffcliError, match=r"all worker processes died .* with --workers 1"):
         list(answers)
 
 
-def test_what_the_work_raises_is_raised_here() -> None:
-    with pytest.raises(SimulationDivergedError, match="too stiff; soften it") as raised:
-        list(in_order(diverge, range(9), 2, never))
-    assert "in diverge" in raised.value.__notes__[0]
+@pytest.mark.parametrize("workers", [1, 2])
+def test_what_the_work_raises_three_times_stands_for_its_answer(workers: int) -> None:
+    first, failed, *others = in_order(diverge, range(9), workers, never)
+    assert [first, *others] == [0, *range(2, 9)]
+    assert isinstance(failed, Failed)
+    assert isinstance(failed.error, SimulationDivergedError)
+    assert str(failed.error) == "too stiff; soften it"
+    if workers > 1:
+        assert "in diverge" in failed.error.__notes__[0]
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_what_the_work_raises_once_or_twice_is_tried_again(workers: int, tmp_path: Path) -> None:
+    work = partial(stumble, tmp_path)
+    assert list(in_order(work, range(5), workers, never)) == list(range(5))
 
 
 def test_nobody_waits_for_tasks_whose_answers_nobody_wants() -> None:
