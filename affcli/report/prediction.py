@@ -32,7 +32,8 @@ def prediction_tables(
     moved = sum(push.moved for push in pushes)
     table = Sheet(
         ("rows", "hits", "false alarms", *ERROR_COLUMNS),
-        title=f"{title}: {len(pushes)} fresh pushes predicted, {moved} of which moved the puck",
+        title=f"{title}: {len(pushes)} fresh pushes predicted, {moved} of which moved the "
+        "attractor",
         caption="hits: of those that moved it; false alarms: of the others (95 % intervals)\n"
         "degrees, inches: half of the hits are off by less; 95 %: so many are\n"
         f"rows: the first learned; the nearest predicts, if it lies within {radius:g} in",

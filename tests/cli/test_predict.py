@@ -15,7 +15,7 @@ def test_the_scores_of_a_growing_table_are_told_and_nothing_is_written(learned: 
     before = learned.read_bytes()
     ended = done(*predict(learned, "--pushes", "300"))
     assert ended.err == ""
-    assert ended.out.startswith("Run 1, t-hook: what it predicts of 300 fresh pushes, ")
+    assert ended.out.startswith("Run 1, t-hook: 300 fresh pushes predicted, ")
     value = done(*predict(learned, "--pushes", "300", "--json")).result
     ((in_table,),) = rows(learned, "SELECT rows FROM learning_run WHERE tool = 't-hook'")
     assert [score["rows"] for score in value["scores"]] == [5, 10, 20, 40, 80, in_table]

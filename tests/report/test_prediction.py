@@ -93,7 +93,7 @@ def test_the_json_has_what_the_table_shows() -> None:
 @pytest.mark.parametrize("columns", [80, 40])
 def test_the_tables_fit_the_screen_and_say_the_same(columns: int) -> None:
     text = drawn(prediction_tables("Run 1, stick", 1.5, HAND_MADE), columns)
-    assert "6 fresh pushes, 3 of which moved" in " ".join(text.split())
+    assert "6 fresh pushes predicted, 3 of which moved the attractor" in " ".join(text.split())
     assert "0.67 (0.09 to 0.99)" in text
     assert "0.33 (0.01 to 0.91)" in text
     assert "as the wrist moved" in text
