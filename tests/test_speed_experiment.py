@@ -16,7 +16,7 @@ import pytest
 from tests.cli.program import PATIENCE, ROOT
 
 SPEED = ROOT / "experiments" / "speed"
-QUICK = ("pushes", "loop", "query", "storing", "hours", "growth")
+QUICK = ("pushes", "loop", "query", "storing", "hours", "growth", "compare")
 
 
 def bench(

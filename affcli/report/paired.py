@@ -52,9 +52,12 @@ def _table(
     robots = many(max(one.robots for one in differences), "pair") + " of robots"
     if label:
         headings, words = (label,), [(total_words(one, cells),) for one in differences]
+    each = sorted({one.trials for one in differences})
+    of = f"{each[0]:g}" if len(each) == 1 else f"{each[0]:g} to {each[-1]:g}"
+    whole = f"{other.name} against {result.against.name}: {robots}"
     table = Sheet(
         (*headings, result.against.name, other.name, "change", "95 % interval", "d", "+/-", "p"),
-        title=f"{other.name} against {result.against.name}: {robots}" if label else "",
+        title=whole if label else f"Cells of {of} trials",
         left=headings,
     )
     for one, cell in zip(differences, words, strict=True):

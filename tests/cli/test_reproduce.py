@@ -45,7 +45,7 @@ def test_the_same_command_again_changes_nothing(reproduced: Path, leisurely: Pat
     before = reproduced.read_bytes()
     for workers in ("1", "2"):
         ended = done(*reproduce(reproduced, leisurely, "--workers", workers))
-        assert ended.out.startswith("Extension of reach: paper|mean of 2 robots [central 95 %]\n")
+        assert ended.out.startswith("Extension of reach: paper|mean of 2 robots [range]\n")
         assert reproduced.read_bytes() == before
 
 
@@ -90,9 +90,8 @@ def check(spread: dict[str, Any], counts: list[int]) -> None:
 
     assert spread["mean"] == pytest.approx(fmean(counts))
     assert (spread["low"], spread["high"]) == (smallest(0.025), smallest(0.975))
-    assert spread["inside"] == (spread["low"] <= spread["paper"] <= spread["high"])
-    low, high = spread["mean_ci"]
-    assert low <= spread["mean"] <= high
+    # Two robots have no interval, and are too few to hold the paper's count against.
+    assert (spread["inside"], spread["mean_ci"]) == (None, None)
 
 
 def test_the_numbers_are_those_of_the_stored_trials(value: Any, reproduced: Path) -> None:

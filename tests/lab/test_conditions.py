@@ -1,12 +1,14 @@
 """Conditions read from a store: what their robots solved, compared, planned with and followed."""
 
 import pytest
+import sqlalchemy as sa
 
 from affcli.core.results import Cell
 from affcli.errors import UsageError
 from affcli.lab.conditions import compared, counts_of, planned, sessions_named
 from affcli.lab.courses import curves_of
 from affcli.store import Store
+from affcli.store.tables import trial
 from tests.store.conditions import SECOND, stored_conditions
 from tests.store.records import begun
 
@@ -47,6 +49,18 @@ def test_robots_are_compared_with_the_first_condition_or_with_one_that_is_named(
     assert [(d.condition, d.worse) for d in again.cells] == [("session 1", 4), ("session 3", 4)]
     with pytest.raises(UsageError, match="no condition 'session 9'; did you mean session"):
         compared(store, conditions, "session 9", ("tool",))
+
+
+def test_a_robot_with_an_invalid_trial_is_left_out_where_it_was(store: Store) -> None:
+    conditions = sessions_named(store, stored_conditions(store, conditions=2))
+    with store.database.writing() as connection:
+        invalid = sa.update(trial).where(trial.c.id == 1).values(outcome="invalid")
+        connection.execute(invalid)
+    counts = counts_of(store, conditions[0], ("tool",)).cells[STICK._replace(goal="")]
+    assert (counts[0], counts[1]) == ((1, 0), (2, 1))
+    result = compared(store, conditions, None, ("tool",))
+    assert result.left_out == {"session 2": (0, 8)}
+    assert [one.robots for one in (*result.totals, *result.cells)] == [7, 8, 7]
 
 
 def test_what_cannot_be_compared_is_named(store: Store) -> None:
