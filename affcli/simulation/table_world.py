@@ -211,7 +211,7 @@ class TableWorld:
         aim = Observation(target.x, target.y, *[0.0] * 10)
         robot.execute(position_wrist(Point(0.0, 0.0), target.angle), aim)
         if not step.blocked:
-            robot.execute(step.call, aim)
+            robot.execute(step.call, None)
         return True
 
     def lost_rows(self, learned: LearningSpec, left: Tool, starts: RowStarts) -> "LostAffordances":

@@ -119,7 +119,8 @@ def insert_one(
     connection: sa.Connection, table: sa.TableClause, values: Mapping[str, object]
 ) -> int:
     """Insert one row by the names of its columns; return the id it was given."""
-    return int(connection.execute(sa.insert(table), values).lastrowid)
+    # By `values`, a name that the table lacks is an error; as parameters it would be left out.
+    return int(connection.execute(sa.insert(table).values(dict(values))).lastrowid)
 
 
 def mappings(connection: sa.Connection, wanted: sa.Select[Any]) -> list[dict[str, Any]]:

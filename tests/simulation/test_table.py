@@ -57,6 +57,12 @@ def test_at_the_beginning_the_arm_can_hold_the_tool_lifted_and_on_the_table() ->
         assert reach_at(arm, height).holds(home.point)
 
 
+def test_at_first_the_attractor_lies_on_the_midline_and_there_is_no_goal() -> None:
+    scene = table_with("stick").scene
+    assert scene.attractor == Pose(0.0, WORKSPACE.layout.midline)
+    assert scene.goal is None
+
+
 def test_without_a_tool_on_the_table_nothing_can_be_asked_of_it() -> None:
     table = Table(WORKSPACE, SETTINGS.physics)
     with pytest.raises(LookupError, match="no tool on the table"):

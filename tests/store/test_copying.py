@@ -104,6 +104,12 @@ def test_a_damaged_database_is_not_copied(size: int, store: Store, tmp_path: Pat
     assert not (tmp_path / "copy.db").exists()
 
 
+def test_what_is_not_there_is_not_copied(tmp_path: Path) -> None:
+    with pytest.raises(DatabaseError, match=r"no\.db: no database there"):
+        backup(tmp_path / "no.db", tmp_path / "copy.db")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_copy_does_not_replace_its_own_original(database: Path) -> None:
     before = database.read_bytes()
     with pytest.raises(DatabaseError, match="that is the database itself"):

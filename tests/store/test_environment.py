@@ -45,10 +45,17 @@ def test_here_all_is_well(database: Path) -> None:
 
 
 @pytest.mark.fault(17)
+@pytest.mark.parametrize(
+    "kind",
+    [
+        *("nfs", "nfs4", "cifs", "smb3", "smbfs", "ncpfs"),
+        *("afs", "9p", "lustre", "gpfs", "fuse.sshfs"),
+    ],
+)
 def test_a_network_file_system_is_pointed_out(
-    database: Path, monkeypatch: pytest.MonkeyPatch
+    kind: str, database: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(environment, "file_system", lambda folder, mounts: "nfs4")
+    monkeypatch.setattr(environment, "file_system", lambda folder, mounts: kind)
     found = facts(database)["file system"]
     assert found.state == "look"
     assert "keep the database on a local disk" in found.remedy

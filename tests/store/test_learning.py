@@ -306,6 +306,15 @@ def test_a_value_that_affcli_did_not_write_is_named(params: str, store: Store) -
         store.learning.table(run.id)
 
 
+@pytest.mark.parametrize("column", ["binding_behavior", "exploratory_behavior"])
+def test_a_row_of_a_behavior_that_its_run_never_had_is_damage(column: str, store: Store) -> None:
+    run = learned(store)
+    with store.database.writing() as connection:
+        connection.exec_driver_sql(f"UPDATE affordance SET {column} = 'juggle'")
+    with pytest.raises(DatabaseError, match=f"the affordance table of run {run.id} holds a value"):
+        store.learning.table(run.id)
+
+
 @pytest.mark.fault(43)
 def test_the_latest_run_is_the_one_begun_last_whatever_the_clock_says(store: Store) -> None:
     earlier = store.learning.begin(learning_spec(seed=1, behaviors=3), VERSIONS, LATER)
