@@ -59,6 +59,8 @@ FAULTS = {
     37: "A command is killed between two commits, or within one (`tests/states/kinds.py` lists "
     "what that leaves): every command that reads does so or says in one line why not; `affcli db "
     "check` names what is unfinished; the same command goes on.",
+    38: "A record holds a value that affcli did not write: a command that needs it names it, what "
+    "is asked of other records is answered, and `affcli db check` finds it.",
     39: "Something is to be resumed where nothing was interrupted: refused, and no file is made.",
     43: "The clock goes back, or stands in another century: results are the same, and the order in "
     "which things were begun decides which is the latest.",

@@ -52,9 +52,7 @@ def learned_runs(
         if tool not in (None, chosen.spec.tool):
             raise UsageError(f"run {run} is of the {chosen.spec.tool}: leave out --tool")
         return [chosen]
-    there = {one.spec.tool for one in records.learning.runs(status="done")}
-    known = dict.fromkeys([*registry.parts("tools"), *sorted(there)])
-    names = [tool] if tool is not None else [name for name in known if name in there]
+    names = [tool] if tool is not None else _learned_tools(records)
     runs = [found for found in map(records.learning.latest, names) if found is not None]
     if not runs:
         wanted = "tools" if tool is None else registry.part("tools", tool).name
@@ -64,6 +62,13 @@ def learned_runs(
             f"nothing learned with the {wanted} in {database}{only}; first run: {learning}"
         )
     return runs
+
+
+def _learned_tools(records: "store.Store") -> list[str]:
+    """Return the tools that were learned: those that are registered first, in their order."""
+    there = {one.spec.tool for one in records.learning.runs(status="done")}
+    known = dict.fromkeys([*registry.parts("tools"), *sorted(there)])
+    return [name for name in known if name in there]
 
 
 def tool_or_default(tool: str | None, run: int | None) -> str | None:

@@ -201,11 +201,12 @@ def require_current(revision: str, path: Path) -> None:
     stands = f"{one_line(path)}: its schema is at revision {one_line(revision)}"
     if is_older(revision):
         raise DatabaseError(f"{stands}, this affcli needs {REVISION}: run `affcli db upgrade`")
-    newer = f"install a newer affcli{or_its_copy(path)}"
-    raise DatabaseError(f"{stands}, this affcli knows {REVISION}: {newer}")
+    raise DatabaseError(
+        f"{stands}, this affcli knows {REVISION}: install a newer affcli{_or_its_copy(path)}"
+    )
 
 
-def or_its_copy(path: Path) -> str:
+def _or_its_copy(path: Path) -> str:
     """Name the copy that the latest upgrade of a database made, where there is one, as a remedy."""
     copies = path.parent.glob(f"{escape(path.name)}.{'[0-9]' * len(REVISION)}*.backup")
     latest = max(copies, key=lambda copy: copy.stat().st_mtime, default=None)

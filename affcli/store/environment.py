@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from affcli.errors import DatabaseError, one_line
+from affcli.store.database_file import require_current
 from affcli.store.health import database_info
 from affcli.store.journal import journal_mode_for
 
@@ -122,13 +123,10 @@ def _database(path: Path) -> Fact:
         return Fact("database", "ok", "not there yet; `affcli learn` makes it")
     try:
         info = database_info(path)
+        require_current(info.revision, path)
     except DatabaseError as error:
         return Fact("database", "bad", str(error))
     shown = f"revision {info.revision}, journal mode {info.journal_mode}"
-    if info.revision < info.code_revision:
-        return Fact("database", "bad", shown, "run `affcli db upgrade`")
-    if info.revision != info.code_revision:
-        return Fact("database", "bad", shown, "install a newer affcli")
     safe = journal_mode_for(sqlite3.sqlite_version_info)
     if info.journal_mode == "wal" and safe != "wal":
         remedy = "let one process at a time write it; the next writer that is alone mends that"

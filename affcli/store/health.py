@@ -36,6 +36,10 @@ class Finding:
 
 
 CHECKS = {
+    "every page is sound": """
+        SELECT integrity_check FROM pragma_integrity_check WHERE integrity_check <> 'ok'""",
+    "every reference leads somewhere": """
+        SELECT "table" || ', to ' || parent FROM pragma_foreign_key_check""",
     "a learning run has as many behaviors as it says": """
         SELECT 'run ' || id FROM learning_run r WHERE kept = 'all' AND behaviors
         <> (SELECT count(*) FROM behavior WHERE learning_run_id = r.id)""",
@@ -68,6 +72,11 @@ CHECKS = {
         GROUP BY affordance_id) s
         ON s.affordance_id = a.id WHERE a.times_used <> 1 + coalesce(s.used, 0)
         OR a.times_successful <> 1 + coalesce(s.successful, 0)""",
+    "what a run or a session is a function of can be read": """
+        SELECT 'run ' || id FROM learning_run WHERE NOT (json_valid(settings)
+        AND json_valid(repertoire) AND json_valid(binding_params) AND json_valid(versions))
+        UNION ALL SELECT 'session ' || id FROM session WHERE NOT (json_valid(settings)
+        AND json_valid(repertoire) AND json_valid(binding_params) AND json_valid(versions))""",
     "a finished run needs nothing to go on": """
         SELECT 'run ' || id FROM learning_run
         WHERE (status = 'done') <> (checkpoint IS NULL) AND behaviors > 0""",
@@ -97,23 +106,14 @@ def check(path: Path, *, timeout: float = LONGEST_WAIT) -> tuple[Finding, ...]:
     with opened(path, "rw", timeout) as driver:
         require_current(require_something(look(driver), path), path)
         with one_state(driver):
-            pages = [row[0] for row in driver.execute("PRAGMA integrity_check") if row[0] != "ok"]
-            lost = driver.execute("PRAGMA foreign_key_check").fetchall()
-            found = [
-                Finding("every page is sound", len(pages), str(pages[0]) if pages else ""),
-                Finding(
-                    "every reference leads somewhere",
-                    len(lost),
-                    f"{lost[0][0]}, to {lost[0][2]}" if lost else "",
-                ),
-            ]
-            for what, query in (CHECKS | UNFINISHED).items():
-                places = [str(row[0]) for row in driver.execute(query)]
-                if what in UNFINISHED:
-                    found.append(Finding(what, 0, ", ".join(places), len(places)))
-                else:
-                    found.append(Finding(what, len(places), places[0] if places else ""))
-    return tuple(found)
+            places = {
+                what: [str(place) for (place,) in driver.execute(query)]
+                for what, query in (CHECKS | UNFINISHED).items()
+            }
+    return (
+        *(Finding(what, len(places[what]), "".join(places[what][:1])) for what in CHECKS),
+        *(Finding(what, 0, ", ".join(places[what]), len(places[what])) for what in UNFINISHED),
+    )
 
 
 @dataclass(frozen=True, slots=True)

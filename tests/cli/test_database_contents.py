@@ -129,6 +129,27 @@ def test_a_value_that_cannot_be_is_worked_with_or_named(change: str, small: Path
     answers(small)
 
 
+@pytest.mark.fault(38)
+@pytest.mark.parametrize("column", ["settings", "repertoire", "binding_params", "versions"])
+def test_a_run_that_cannot_be_read_is_named_and_others_are_shown(column: str, used: Path) -> None:
+    tamper(used, f"UPDATE learning_run SET {column} = '{{' WHERE id = 2")
+    named = "affcli: learning run 2 holds a value that affcli did not write; restore a copy of the"
+    for line in ("report", "table list", "table list --run 2", "replay --run 2", "solve --goal 2"):
+        assert refused(3, *line.split(), "--db", used).startswith(named)
+    for line in (
+        *("table list --run 1", "table show 1", "replay --run 1 --steps 1", "predict --pushes 2"),
+        *(
+            "solve --goal 2 --tool t-hook --start 3",
+            "sql select(1)",
+            "camera view --run 1 --step 1",
+        ),
+    ):
+        out = ("--out", used.with_name("new.png")) if line.startswith("camera") else ()
+        done(*line.split(), *out, "--db", used)
+    found = affcli("db", "check", "--json", "--db", used)
+    assert (found.code, [one["example"] for one in found.json if one["wrong"]]) == (3, ["run 2"])
+
+
 @pytest.mark.parametrize("changes", NAMES.values(), ids=NAMES.keys())
 def test_a_name_that_nobody_knows_is_not_damage(changes: tuple[str, ...], small: Path) -> None:
     """It is shown, and what cannot be done with it is left out, or says what is missing."""

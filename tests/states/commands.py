@@ -45,7 +45,7 @@ class Writing:
         return called(self.line)
 
 
-LEARN = "learn --tool stick --tool t-hook --behaviors 60 --config settings.toml"
+LEARN = "learn --tool stick --tool t-hook --behaviors 60 --set trial.max_steps=4"
 USED = (LEARN, "solve --goal 2 --start 1 --tool t-hook")
 
 WRITING = {
@@ -63,18 +63,17 @@ WRITING = {
 }
 """What writes: a database, a copy of one, or another file; by the words that call it."""
 
-PLACES = {"--out", "--html", "--gif", "--video"}
+PLACES = {"--out", "--html", "--gif"}
 """Options that name a file to be written."""
 ENDINGS = {"figure": "svg", "camera": "png", "table": "csv", "--html": "html", "--gif": "gif"}
-ENDINGS |= {"--video": "avi", "camera calibrate": "json"}
 USUAL = {"predict": "--pushes 2", "verify": "--rows 2", "figure prediction": "--pushes 2"}
 USUAL |= {f"camera view {one}": "--step 1 --out out.png" for one in ("--run", "--trial")}
-USUAL |= {"camera view --video": "--trial {trial} --step 1"}
 USUAL |= {"camera view --after": "--trial {trial} --step 1 --out out.png"}
-USUAL |= {f"replay {one}": "{trial} --speed 20" for one in ("--gif", "--json")}
+USUAL |= {f"replay {one}": "{trial} --speed 100" for one in ("--gif", "--json")}
 """Given beside what is asked for, so that it ends soon or can be done at all."""
-NOT_ASKED = {"--force", "--update", "--frame", "--pattern", "--help"}
-"""Flags that are given always, that write, or that leave out the database."""
+NOT_ASKED = {"--force", "--update", "--frame", "--pattern", "--help", "--video"}
+"""Options that are given always, that write, or that leave out the database; and a film of what the
+camera sees, for which one trial is read as for a picture, and then a thousand pictures drawn."""
 LATEST = {"--session": "session", "--trial": "trial", "--after-trial": "trial", "TRIAL": "trial"}
 LATEST |= {"--run": "learning_run", "--compare": "learning_run", "ID": "affordance"}
 """Which number is meant, of an option or, without one, by the word that stands for it."""
@@ -119,8 +118,10 @@ def reading() -> Iterator[str]:
 def _asked(one: Any, name: str) -> str:
     """Return an option or argument as it is asked for; empty if it says nothing of the database."""
     option = one.opts[0]
+    if option in NOT_ASKED:
+        return ""
     if getattr(one, "is_flag", False):
-        return "" if option in NOT_ASKED else str(option)
+        return str(option)
     if one.metavar in {"ID", "TRIAL"} or option in PLACES:
         return _given(one, name)
     return ""

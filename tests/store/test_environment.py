@@ -80,7 +80,7 @@ def test_what_must_be_mended_says_how(database: Path, tmp_path: Path) -> None:
     assert facts(junk)["database"].state == "bad"
     old = tmp_path / "old.db"
     old.write_bytes((Path(__file__).parent / "databases" / "0001.db").read_bytes())
-    assert facts(old)["database"].remedy == "run `affcli db upgrade`"
+    assert facts(old)["database"].value.endswith("this affcli needs 0004: run `affcli db upgrade`")
     assert facts(tmp_path / "new.db")["database"].state == "ok"
     assert not (tmp_path / "new.db").exists()
 

@@ -49,7 +49,7 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_all_is_well_in_a_database_that_was_used(sound: Path) -> None:
     findings = check(sound)
-    assert len(findings) == 15
+    assert len(findings) == 16
     assert [f for f in findings if f.wrong] == []
     assert {f.example for f in findings if f.unfinished} == {"session 1 (solve)"}
 
@@ -72,6 +72,8 @@ def test_all_is_well_in_an_empty_one(store: Store) -> None:
         ("update replication set replicated = 1 - replicated", "counters of a row"),
         ("update replication set affordance_id = 9999", "every reference leads somewhere"),
         ("update learning_run set checkpoint = '{}'", "needs nothing to go on"),
+        ("update learning_run set settings = '{'", "can be read"),
+        ("update session set versions = ''", "can be read"),
         ("update trial set session_id = 99", "every reference leads somewhere"),
     ],
 )
