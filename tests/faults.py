@@ -54,5 +54,11 @@ FAULTS = {
     35: "A reader who leaves (`| head`), no terminal, 40 columns, NO_COLOR: a clean end, and text "
     "that can be read.",
     36: "A seed of 2^63, or a negative one: 4.",
+    40: "Another process holds the lock for a moment, again and again: every command waits from "
+    "the opening of the file on, says after five seconds for whom, and ends as ever.",
+    41: "Several use the table of one run at once: they take turns trial by trial, and every "
+    "trial can be replayed.",
+    42: "A file or a stored value that grows when it is read: refused by its size or its depth "
+    "before it is parsed.",
 }
 """What happens, and what must follow, by number."""
