@@ -71,7 +71,7 @@ test-browser: $(INSTALLED_BROWSER)
 	fi
 	$(VENV)/bin/pytest tests/browser --browser
 
-## torture       the long tests whole: a hundred kills, readers for a minute, fuzzing
+## torture       the long tests whole: a hundred kills, readers for a minute, random attacks, fuzzing
 torture: $(INSTALLED_DEV)
 	$(VENV)/bin/pytest -m torture --torture --numprocesses auto --dist loadfile
 

@@ -62,6 +62,12 @@ FAULTS = {
     38: "A record holds a value that affcli did not write: a command that needs it names it, what "
     "is asked of other records is answered, and `affcli db check` finds it.",
     39: "Something is to be resumed where nothing was interrupted: refused, and no file is made.",
+    40: "Another process holds the lock for a moment, again and again: every command waits from "
+    "the opening of the file on, says after five seconds for whom, and ends as ever.",
+    41: "Several use the table of one run at once: they take turns trial by trial, and every "
+    "trial can be replayed.",
+    42: "A file or a stored value that grows when it is read: refused by its size or its depth "
+    "before it is parsed.",
     43: "The clock goes back, or stands in another century: results are the same, and the order in "
     "which things were begun decides which is the latest.",
     44: "Killed commands leave files half written: the next command that writes the same one "

@@ -21,7 +21,7 @@ from affcli.store.database_file import (
     stored_revision,
 )
 from affcli.store.experiments import Experiments
-from affcli.store.faults import faults_named, result_code
+from affcli.store.faults import result_code
 from affcli.store.journal import set_journal_mode
 from affcli.store.learning import Learning
 from affcli.store.migrate import run_migrations
@@ -105,12 +105,11 @@ def open_store(
         with _connected(driver) as database:
             if revision is None:
                 _migrate(database, driver)
-            with faults_named(path):
-                driver.execute("PRAGMA foreign_keys = ON")
-                if write or create:
-                    set_journal_mode(driver)
-                else:
-                    driver.execute("PRAGMA query_only = ON")
+            driver.execute("PRAGMA foreign_keys = ON")
+            if write or create:
+                set_journal_mode(driver)
+            else:
+                driver.execute("PRAGMA query_only = ON")
             yield Store(database)
 
 
@@ -150,10 +149,9 @@ def upgrade(
 @contextmanager
 def _connected(driver: Waiting) -> Iterator[Database]:
     """Give a database whose one connection is `driver`; a commit returns when it is on the disk."""
-    with faults_named(driver.path):
-        # FULL would leave out the folder: after a power cut the journal could be there again, and
-        # would take back what was said to be saved.
-        driver.execute("PRAGMA synchronous = EXTRA")
+    # FULL would leave out the folder: after a power cut the journal could be there again, and would
+    # take back what was said to be saved.
+    driver.execute("PRAGMA synchronous = EXTRA")
     # Transactions are ended where they are begun, so nothing is left to reset: and after ctrl-C the
     # driver may be closed already.
     engine = sa.create_engine(

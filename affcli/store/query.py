@@ -2,8 +2,6 @@
 
 import sqlite3
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
@@ -13,7 +11,6 @@ from affcli.core.row_filter import Cell
 from affcli.errors import BadInputError, one_line
 from affcli.store.database_file import (
     look,
-    one_state,
     opened,
     require_current,
     require_place,
@@ -46,8 +43,8 @@ ALLOWED = frozenset(
         sqlite3.SQLITE_RECURSIVE,
     }
 )
-"""All that a query may do. Opening read-only is not enough: ATTACH and VACUUM INTO would still
-write other files."""
+"""All that a query may do. To open the file read-only would not be enough: ATTACH and VACUUM INTO
+would still write others; and after a kill it must first be set right from its journal."""
 
 FORBIDDEN_FUNCTIONS = frozenset({"load_extension", "fts3_tokenizer", "readfile", "writefile"})
 
@@ -98,25 +95,22 @@ def run_sql(
     """
     require_place(path, create=False, write=False)
     with opened(path, "rw", timeout) as driver:
-        # Not yet read-only: after a kill the file must first be set right from its journal.
         require_current(require_something(look(driver), path), path)
-    with opened(path, "ro", timeout) as driver, one_state(driver), _confined(driver):
+        # Waits for a lock now, outside the time of the query; ends when the file is closed.
+        driver.execute("BEGIN")
+        driver.execute("SELECT 1 FROM sqlite_master")
+        _confine(driver)
         return _run(driver, text, max_seconds, max_rows)
 
 
-@contextmanager
-def _confined(driver: Waiting) -> Iterator[None]:
-    """Let the connection do nothing in a ``with`` block but read values of a limited size."""
+def _confine(driver: Waiting) -> None:
+    """Let the connection do nothing from now on but read values of a limited size."""
     driver.execute("PRAGMA query_only = ON")
     driver.execute("PRAGMA trusted_schema = OFF")
     for limit, value in LIMITS.items():
         driver.setlimit(limit, value)
     driver.text_factory = lambda raw: raw.decode("utf-8", "replace")
     driver.set_authorizer(_judge)
-    try:
-        yield
-    finally:
-        driver.set_authorizer(None)
 
 
 def _judge(action: int, _: str | None, function: str | None, *__: str | None) -> int:

@@ -34,9 +34,6 @@ Columns = Mapping[str, Any]
 """A row by the names of its columns."""
 
 
-UNREADABLE = (ValueError, TypeError, KeyError, AttributeError, OverflowError, BadInputError)
-
-
 @contextmanager
 def reading_what_was_written(place: str) -> Iterator[None]:
     """Say so when a value in the database is one that no version of affcli writes.
@@ -46,7 +43,14 @@ def reading_what_was_written(place: str) -> Iterator[None]:
     """
     try:
         yield
-    except UNREADABLE as error:
+    except (
+        ValueError,
+        TypeError,
+        LookupError,
+        AttributeError,
+        OverflowError,
+        BadInputError,
+    ) as error:
         raise DatabaseError(
             f"{place} holds a value that affcli did not write; restore a copy of the database"
         ) from error

@@ -49,10 +49,9 @@ class Waiting(sqlite3.Connection):
         """Return a cursor that waits, unless another kind is asked for."""
         return super().cursor(factory or _WaitingCursor)
 
-    def execute(self, *statement: Any) -> sqlite3.Cursor:
+    def execute(self, *statement: Any) -> Any:
         """Execute a statement with a cursor that waits."""
-        cursor: sqlite3.Cursor = self.cursor().execute(*statement)
-        return cursor
+        return self.cursor().execute(*statement)
 
 
 class _WaitingCursor(sqlite3.Cursor):
@@ -64,8 +63,8 @@ class _WaitingCursor(sqlite3.Cursor):
         Raises:
             DatabaseError: they do not for too long.
         """
-        path, longest = self.connection.path, self.connection.longest
-        began, told = time.monotonic(), False
+        path, longest, told = self.connection.path, self.connection.longest, False
+        began = time.monotonic()
         while True:
             try:
                 return super().execute(*statement)
@@ -102,12 +101,10 @@ def connected(path: Path, mode: str, longest: float) -> Waiting:
 
 def lock_holder(path: Path) -> str:
     """Name the process that holds a lock on the file, where the system tells (Linux)."""
-    inodes = set()
-    for name in (path, Path(f"{path}-shm")):
-        with suppress(OSError):
-            inodes.add(name.stat().st_ino)
     holders: dict[str, str] = {}
     with suppress(OSError, ValueError):
+        files = (path, Path(f"{path}-shm"))
+        inodes = {file.stat().st_ino for file in files if file.exists()}
         for line in Path("/proc/locks").read_text().splitlines():
             _, kind, _, access, pid, place, *_ = line.split()
             # 0 is a process of another container.

@@ -8,8 +8,11 @@ import pytest
 
 from affcli.cli.options import FIGURE_ENDINGS
 from affcli.report.figures.canvas import FORMATS
+from affcli.store import open_store
 from tests.cli.program import Arg, Ended, done, names_in, refused, rows
 from tests.cli.without import without
+from tests.factories import learning_spec
+from tests.lab.quick import NOW
 
 OF_DATABASE: dict[str, tuple[tuple[str, ...], str]] = {
     "the latest run of the T-hook": (("affordances",), "What the T-hook affords; "),
@@ -254,3 +257,13 @@ def test_without_matplotlib_nothing_else_is_missed(learned: Path) -> None:
     for command in (("report",), ("solve", "--goal", "3", "--start", "1", "--tool", "stick")):
         assert without("matplotlib", *command, "--db", learned).code == 0
     assert rows(learned, "SELECT count(*) FROM trial") == [(1,)]
+
+
+def test_a_run_that_was_killed_before_its_first_behavior_does_not_keep_others_from_being_drawn(
+    learned: Path, tmp_path: Path
+) -> None:
+    with open_store(learned, create=False, write=True) as store:
+        store.learning.begin(learning_spec("l-hook", seed=9), {}, NOW)
+    out = ("--db", learned, "--out", tmp_path / "a.svg")
+    assert "learning of T-hook (run 1), Stick (run 2)" in done("figure", "learning", *out).err
+    assert "run 3 has not begun" in refused(2, "figure", "learning", "--run", "3", *out, "--force")

@@ -213,14 +213,9 @@ def test_stopped_it_keeps_what_was_saved(learned: Path) -> None:
 
 
 @pytest.mark.fault(6)
-def test_two_at_once_never_count_what_they_did_not_see(learned: Path) -> None:
-    """The second to change a row's counters is told so; what it saved before is kept."""
+def test_two_at_once_take_turns(learned: Path) -> None:
     both = side_by_side(2, *verify(learned, "--update", "--rows", "40"))
-    for ended in both:
-        assert ended.code in {0, 3}
-        if ended.code == 3:
-            assert "another process changed the counters of affordance" in ended.err
-            assert "the tries before are saved" in ended.err
+    assert [ended.code for ended in both] == [0, 0]
     assert rows(learned, USES) == rows(learned, TRIES)
     done("db", "check", "--db", learned)
 
