@@ -3,6 +3,7 @@
 PYTHON ?= python3
 ROBOTS = 200
 SEED = 1000
+MUTANTS = 400
 WORKERS =
 
 # What the browser tests drive, by the names that systems give it; the same as in tests/browser.
@@ -15,20 +16,27 @@ QUICK = $(wildcard tests/analysis tests/exploration) tests/behaviors tests/confo
   tests/procedures tests/simulation $(filter-out $(DRAWN),$(wildcard tests/report/test_*.py)) \
   tests/test_config.py tests/test_golden.py tests/test_quoted.py tests/test_readme_numbers.py tests/test_registry.py
 
+# What `make mutants` lets find changes of the code: these, and what else tests the rooms in process and soon.
+IN_PROCESS = $(QUICK) $(filter-out tests/store/test_processes.py tests/store/test_upgrading.py, \
+  $(wildcard tests/store/test_*.py)) $(addprefix tests/physics/test_,arm.py contact.py surface_friction.py \
+  wrist_motion.py)
+
 VENV := .venv
 AFFCLI := $(VENV)/bin/affcli
 PIP := $(VENV)/bin/python -m pip --disable-pip-version-check
 
-# Stamps: the environment itself, affcli in it, the tools of check and test, those of test-browser.
+# Stamps: the environment itself, affcli in it, the tools of check and test, those of test-browser, those
+# of mutants.
 MADE := $(VENV)/.made
 INSTALLED := $(VENV)/.installed
 INSTALLED_DEV := $(VENV)/.installed-dev
 INSTALLED_BROWSER := $(VENV)/.installed-browser
+INSTALLED_MUTANTS := $(VENV)/.installed-mutants
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help demo quick test test-browser torture check reproduce bench clean FORCE
+.PHONY: help demo quick test test-browser torture mutants check reproduce bench clean FORCE
 
 ## help          list these targets
 help:
@@ -74,6 +82,10 @@ test-browser: $(INSTALLED_BROWSER)
 ## torture       the long tests whole: a hundred kills, readers for a minute, random attacks, fuzzing
 torture: $(INSTALLED_DEV)
 	$(VENV)/bin/pytest -m torture --torture --numprocesses auto --dist loadfile
+
+## mutants       change the code in small ways, and see whether the tests find it [MUTANTS=400 SEED=1000]
+mutants: $(INSTALLED_MUTANTS)
+	@$(VENV)/bin/python tests/mutants.py --number $(MUTANTS) --seed $(SEED) $(IN_PROCESS)
 
 ## check         lint, formatting, types and import contracts
 check: $(INSTALLED_DEV)
@@ -132,4 +144,8 @@ $(INSTALLED_DEV): $(MADE) pyproject.toml requirements.lock
 
 $(INSTALLED_BROWSER): $(MADE) pyproject.toml requirements.lock
 	$(call install,what the browser tests need,dev$(comma)browser)
+	@touch $(INSTALLED) $(INSTALLED_DEV) $@
+
+$(INSTALLED_MUTANTS): $(MADE) pyproject.toml requirements.lock
+	$(call install,what the mutants need,dev$(comma)mutants)
 	@touch $(INSTALLED) $(INSTALLED_DEV) $@

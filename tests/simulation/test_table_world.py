@@ -215,9 +215,18 @@ def test_a_step_done_again_looks_as_it_did(blocked: bool) -> None:
         robot.execute(push, aim)
     setting.film(None)
     step = StepScene(
-        *("a step", (1, 1), LEARNED, LEARNED.tool, LEARNED.held, table.goal, 0, 0, before),
-        *(before if blocked else placed.wrist_end, table.wrist),
-        *(start.point, table.attractor.point, setting.binding, push, blocked),
+        *("a step", (1, 1), LEARNED, LEARNED.tool, LEARNED.held),
+        goal=table.goal,
+        seed=0,
+        robot=0,
+        wrist_before=before,
+        wrist_start=before if blocked else placed.wrist_end,
+        wrist_end=table.wrist,
+        attractor_start=start.point,
+        attractor_end=table.attractor.point,
+        binding=setting.binding,
+        call=push,
+        blocked=blocked,
     )
     again: list[Scene] = []
     assert TableWorld(EXACT).step_again(step, lambda clock, scene: again.append(scene))
