@@ -178,8 +178,9 @@ def rows(database: Path, query: str) -> list[tuple[Any, ...]]:
 
 
 def contents(database: Path) -> Contents:
-    """Return all that a database holds, table by table, but when it happened."""
-    tables = rows(database, "SELECT name FROM sqlite_master WHERE type = 'table'")
+    """Return all that a database holds, table by table, but when it happened, and the last ids."""
+    chosen = "type = 'table' AND name <> 'sqlite_sequence'"
+    tables = rows(database, f"SELECT name FROM sqlite_master WHERE {chosen}")
     held: Contents = {}
     for (table,) in sorted(tables):
         columns = [name for _, name, *_ in rows(database, f"PRAGMA table_info({table})")]

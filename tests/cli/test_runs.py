@@ -159,7 +159,7 @@ def test_all_that_a_run_left_goes_with_it(shared: Path) -> None:
     for run in ("1", "2"):
         done("runs", "delete", run, "--yes", "--db", shared)
     left = {table: len(held) for table, held in contents(shared).items() if held}
-    assert left.keys() == {"alembic_version", "sqlite_sequence"}
+    assert left.keys() == {"alembic_version"}
 
 
 def test_without_a_terminal_and_without_yes_nothing_is_deleted(shared: Path) -> None:

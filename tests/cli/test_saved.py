@@ -133,7 +133,6 @@ def test_learning_on_a_full_disk_keeps_its_chunks_and_goes_on_with_room(tmp_path
         ("solve", "--goal", "2"),
         ("break-tool",),
         ("verify", "--update", "--rows", "200"),
-        ("runs", "delete", "1", "--yes"),
         ("reproduce", "--robots", "1", "--workers", "1"),
         ("learn", "--tool", "l-stick", "--behaviors", "600"),
         ("db", "upgrade"),
