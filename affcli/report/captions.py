@@ -118,7 +118,7 @@ def curves_words(curves: Sequence[Curve]) -> Words:
     by_difference: dict[str, list[str]] = {}
     for curve in curves:
         by_difference.setdefault(differing(curve.run.spec), []).append(str(curve.run.id))
-    facts = [f"run {', '.join(ids)}: {words}" for words, ids in by_difference.items()]
+    facts = [f"{', '.join(ids)}: {words}" for words, ids in by_difference.items()]
     counted = many(len(curves), "learning run")
     return Words(LEARNING, joined(counted, *(facts if len(facts) > 1 else by_difference)))
 

@@ -95,7 +95,7 @@ def test_robots_of_a_reproduction(reproduced: Path) -> None:
     line = refused(2, *learning, "--force")
     assert "no learning runs but of robots: --session 1 draws these" in line
     run = done("figure", "affordances", "--run", "3", "--out", path, "--force", "--db", reproduced)
-    assert "; run 3: L-hook, seed 0, robot 0 of session 1, " in drawn(run, path)
+    assert "; run 3: L-hook, seed 0, robot 0 of session 1; not default: motion" in drawn(run, path)
 
 
 def unfinish(database: Path, run: int) -> None:
@@ -118,7 +118,7 @@ def test_an_unfinished_run_is_drawn_as_far_as_it_came(learned: Path) -> None:
     said = drawn(done("figure", "affordances", "--run", "2", "--compare", "1", *out), path)
     assert said.startswith("What runs 2 and 1 have in common; ")
     said = drawn(done("figure", "learning", "--run", "1", *out), path)
-    assert said.endswith(f" so far (unfinished); default settings: {path}\n")
+    assert " so far (unfinished); not default: trial.max_steps = 6: " in said
 
 
 NUMBERS = "they are numbered 1 to"
@@ -217,7 +217,8 @@ def test_more_runs_than_can_be_told_apart_are_drawn_as_means(learned: Path) -> N
         learn = ("learn", "--tool", "stick", "--behaviors", "5", "--seed", str(seed))
         done(*learn, "--db", learned)
     out = ("--out", learned.parent / "f.svg", "--force", "--db", learned)
-    assert "; 13 learning runs; default settings: " in done("figure", "learning", *out).err
+    said = done("figure", "learning", *out).err
+    assert "; 13 learning runs; 1, 2: not default: trial.max_steps = 6; 3, 4, 5, " in said
     means = (learned.parent / "f.svg").read_bytes()
     chosen = [("--run", str(number)) for number in range(2, 14)]
     done("figure", "learning", *(word for pair in chosen for word in pair), *out)
