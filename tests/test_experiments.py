@@ -8,7 +8,7 @@ import pytest
 
 from affcli.config import toml_file
 from affcli.core.specs import LIVES
-from affcli.lab import experiment
+from affcli.lab.conducting import begin, run
 from affcli.lab.definition import experiment_file, experiment_of
 from affcli.store import open_store
 from tests.lab.quick import now
@@ -29,8 +29,8 @@ def test_two_short_robots_live(path: Path, tmp_path: Path) -> None:
     short = experiment_of({**tables, "base": {**tables.get("base", {}), **SHORT}}, "a test")
     assert [c.name for c in short.conditions] == [c.name for c in whole.conditions]
     with open_store(tmp_path / "short.db", create=True, write=True) as store:
-        info = experiment.begin(store, replace(short, robots=2), now)
-        assert list(experiment.run(store, replace(short, robots=2), info, 1, now)) == [0, 1, 2]
+        info = begin(store, replace(short, robots=2), now)
+        assert list(run(store, replace(short, robots=2), info, 1, now)) == [0, 1, 2]
         assert store.experiments.named(whole.name).status == "done"
         for condition, (name, session) in zip(short.conditions, info.conditions, strict=True):
             trials = store.trials.trials(session_id=session)

@@ -109,10 +109,10 @@ def experiment(
         return
     with opened(database, create=wanted is not None, write=True) as store:
         what = wanted or _interrupted(store, database)
-        info = lab.experiment.begin(store, what, now)
+        info = lab.conducting.begin(store, what, now)
         robots = (shard or Shard()).of(what.robots)
         with progress(one_line(what.name), len(robots), "robots") as bar:
-            for saved in lab.experiment.run(store, what, info, count, now, say, robots, keep):
+            for saved in lab.conducting.run(store, what, info, count, now, say, robots, keep):
                 bar(saved, "")
         results = _results(store, info)
         there = len(store.sessions.saved_robots(info.conditions[0][1]))
@@ -140,7 +140,7 @@ def _say_cost(
 ) -> None:
     """Let one robot live, and say what all of them will take."""
     with progress("one robot", 1.0):
-        found = lab.experiment.estimate(what, now, keep)
+        found = lab.conducting.estimate(what, now, keep)
     counts = (found.robots, found.learning_runs, found.trials, found.robot_hours)
     cost = Cost(*counts, found.seconds, found.bytes, workers)
     names = [condition.name for condition in what.conditions]

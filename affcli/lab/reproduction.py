@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from affcli.core.identity import Component
 from affcli.core.specs import REPRODUCE, RobotRecord, SessionSpec
-from affcli.lab import experiment
+from affcli.lab import conducting, experiment
 from affcli.lab.experiment import ADAPTATION, ADAPTATION_TASKS, Condition, Experiment
 from affcli.lab.run_parts import RunParts
 from affcli.lab.versions import versions
@@ -62,7 +62,7 @@ def reproduce(
     now: Callable[[], str],
     warn: Callable[[str], object] = str,
 ) -> Iterator[int]:
-    """Let `robots` independent robots learn and be tested; see `affcli.lab.experiment.conduct`.
+    """Let `robots` independent robots learn and be tested; see `affcli.lab.conducting.conduct`.
 
     Yields:
         The session's id first, then how many robots are saved: at the beginning, and each time one
@@ -73,5 +73,5 @@ def reproduce(
     made_with = versions(paper.world, paper.parts.sensor)
     session = store.sessions.begin(what.session(robots), made_with, now())
     yield session
-    yield from experiment.conduct(store, whole, [session], range(robots), workers, now, warn)
+    yield from conducting.conduct(store, whole, [session], range(robots), workers, now, warn)
     store.sessions.finish(session, now())

@@ -319,12 +319,13 @@ class Learning:
 
 
 def used_in(session_id: int | None) -> sa.ColumnElement[bool]:
-    """Tell whether a learning run was used by the robots of a session, or stands for itself."""
+    """Tell whether a learning run is part of a session or was used in it, or stands for itself."""
+    c = learning_run.c
     if session_id is None:
-        return learning_run.c.session_id.is_(None)
-    return learning_run.c.id.in_(
-        sa.select(trial.c.learning_run_id).where(trial.c.session_id == session_id)
-    )
+        return c.session_id.is_(None)
+    used = sa.select(trial.c.learning_run_id).where(trial.c.session_id == session_id)
+    # The first as the unique index spells it.
+    return sa.or_(sa.func.coalesce(c.session_id, 0) == session_id, c.id.in_(used))
 
 
 def insert_run(connection: sa.Connection, row: Mapping[str, Any], spec: LearningSpec) -> int:

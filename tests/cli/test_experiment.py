@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from affcli.cli import terminal
+from affcli.lab.conducting import begin, run
 from affcli.lab.definition import experiment_file
-from affcli.lab.experiment import begin, run
 from affcli.store import open_store
 from tests.cli.program import contents, done, ending, names_in, refused, rows, started
 from tests.lab.quick import now, taken

@@ -11,9 +11,10 @@ import pytest
 from affcli.core.row_filter import RowFilter
 from affcli.core.specs import Keep, Protocol, RobotRecord
 from affcli.errors import SimulationDivergedError, UsageError
-from affcli.lab import experiment, reproduction
+from affcli.lab import conducting, experiment, reproduction
+from affcli.lab.conducting import begin, estimate, run
 from affcli.lab.definition import experiment_of
-from affcli.lab.experiment import Experiment, begin, estimate, one_robot, run
+from affcli.lab.experiment import Experiment, one_robot
 from affcli.lab.reproduction import Reproduced
 from affcli.lab.table import listed_rows
 from affcli.store import (
@@ -233,7 +234,7 @@ def test_a_robot_that_fails_does_not_keep_the_others_from_living(
 ) -> None:
     info = begin(store, WHAT, now)
     with monkeypatch.context() as changed:
-        changed.setattr(experiment, "_packed_life", partial(fail, frozenset({1})))
+        changed.setattr(conducting, "_packed_life", partial(fail, frozenset({1})))
         told = run(store, WHAT, info, 1, now)
         assert [next(told) for _ in range(3)] == [0, 1, 2]
         words = r"^robot 1: too stiff; soften it; what the others did is saved, and the same"
@@ -251,7 +252,7 @@ def test_where_the_first_robots_all_fail_the_others_are_not_tried(
     store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     what = replace_head(robots=1000)
-    monkeypatch.setattr(experiment, "_packed_life", partial(fail, frozenset(range(1000))))
+    monkeypatch.setattr(conducting, "_packed_life", partial(fail, frozenset(range(1000))))
     with pytest.raises(SimulationDivergedError, match=r"^robot 0 \(and 2 more\): too stiff"):
         run_all(store, what)
 

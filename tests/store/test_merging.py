@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from affcli.errors import DatabaseError, UsageError
+from affcli.lab.conducting import begin, run
 from affcli.lab.definition import experiment_of
-from affcli.lab.experiment import Experiment, begin, run
+from affcli.lab.experiment import Experiment
 from affcli.store import Merged, Store, check, merge, open_store
 from tests.cli.program import contents
 from tests.lab.quick import NOW, altered, now
