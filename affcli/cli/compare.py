@@ -18,6 +18,7 @@ from affcli.cli.options import (
 )
 from affcli.cli.terminal import say, show_either, show_text
 from affcli.core.names import one_of
+from affcli.core.specs import LIVES
 from affcli.errors import BadInputError, UsageError, one_line
 from affcli.report.csv_table import csv_text
 from affcli.report.paired import COLUMNS, comparison_json, comparison_rows, comparison_tables
@@ -52,6 +53,10 @@ By = Annotated[
         callback=checked_by,
     ),
 ]
+Experiment = Annotated[
+    str | None,
+    typer.Argument(help="Its conditions; else of each --session.", metavar="EXPERIMENT"),
+]
 Sessions = Annotated[
     list[int] | None,
     typer.Option(
@@ -69,6 +74,7 @@ Against = Annotated[
 
 def compare(
     *,
+    experiment: Experiment = None,
     sessions: Sessions = None,
     against: Against = None,
     by: By = "tool,goal",
@@ -103,7 +109,9 @@ def compare(
     if out is not None:
         require_new(out, force=force)
     with opened(database) as store:
-        result = lab.conditions.compared(store, conditions_named(store, sessions, 2), against, by)
+        result = lab.conditions.compared(
+            store, conditions_named(store, experiment, sessions, 2), against, by
+        )
     if form is None:
         show_either(
             as_json=as_json,
@@ -119,17 +127,29 @@ def compare(
 
 
 def conditions_named(
-    store: "Store", sessions: list[int] | None, fewest: int
+    store: "Store", experiment: str | None, sessions: list[int] | None, fewest: int
 ) -> "list[lab.conditions.Condition]":
     """Return the conditions that a command is about; UsageError when they are fewer than that."""
-    found = lab.conditions.sessions_named(store, sessions or [])
-    if len(found) < fewest:
-        there = ", ".join(str(s.id) for s in store.sessions.all("reproduce") if s.status == "done")
-        wanted = " ".join(f"--session {number}" for number in range(1, fewest + 1))
+    if experiment is not None and sessions:
+        raise UsageError(f"name an experiment or --session, not both; drop {one_line(experiment)}")
+    if experiment is not None:
+        found = lab.conditions.experiment_named(store, experiment)
+    else:
+        found = lab.conditions.sessions_named(store, sessions or [])
+    if len(found) >= fewest:
+        return found
+    if experiment is not None:
         raise UsageError(
-            f"name sessions, as in {wanted}; finished reproductions: {there or 'none yet'}"
+            f"experiment {one_line(experiment)} has one condition; compare its session "
+            f"({found[0].session.id}) with another: --session"
         )
-    return found
+    named = ", ".join(one_line(one.name) for one in store.experiments.all())
+    there = ", ".join(str(s.id) for s in store.sessions.all(*LIVES) if s.status == "done")
+    wanted = " ".join(f"--session {number}" for number in range(1, fewest + 1))
+    raise UsageError(
+        f"name an experiment (there: {named or 'none yet'}), or sessions, as in {wanted} "
+        f"(finished: {there or 'none yet'})"
+    )
 
 
 def _checked_format(kind: str | None, out: Path | None) -> str | None:

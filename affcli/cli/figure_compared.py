@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from affcli import lab
-from affcli.cli.compare import Against, By, Sessions, conditions_named
+from affcli.cli.compare import Against, By, Experiment, Sessions, conditions_named
 from affcli.cli.database import opened
 from affcli.cli.figure import Figure, figure
 from affcli.cli.options import DEFAULT_DATABASE, Database
@@ -21,6 +21,7 @@ MOST_COURSES = 6
 @figure
 def compare(
     *,
+    experiment: Experiment = None,
     sessions: Sessions = None,
     against: Against = None,
     by: By = "tool,goal",
@@ -31,10 +32,10 @@ def compare(
     What `affcli compare` says, a row a cell: filled where significant after the correction.
     """
     with opened(database) as store:
-        conditions = conditions_named(store, sessions, 2)
+        conditions = conditions_named(store, experiment, sessions, 2)
         if len(conditions) > 1 + figures.compare.MOST_CONDITIONS:
             most = figures.compare.MOST_CONDITIONS
-            raise UsageError(f"--session: {most} conditions beside the first fit; name fewer")
+            raise UsageError(f"{most} conditions beside the first fit; name fewer with --session")
         result = lab.conditions.compared(store, conditions, against, by)
     return Figure(comparison_words(result), partial(figures.compare.compare_figure, result))
 
@@ -42,6 +43,7 @@ def compare(
 @figure
 def curve(
     *,
+    experiment: Experiment = None,
     sessions: Sessions = None,
     y: Annotated[
         str, typer.Option("--y", help="solved, rows or share.", metavar="MEASURE")
@@ -63,9 +65,9 @@ def curve(
     condition is a point.
     """
     with opened(database) as store:
-        conditions = conditions_named(store, sessions, 1)
-        if len(conditions) > MOST_COURSES:
-            raise UsageError(f"--session: {MOST_COURSES} conditions fit; name fewer")
+        conditions = conditions_named(store, experiment, sessions, 1)
         found = lab.courses.curves_of(store, conditions, y, x)
+    if len({line.name for line in found.lines}) > MOST_COURSES:
+        raise UsageError(f"{MOST_COURSES} conditions fit; name fewer with --session")
     words = conditions_words(f"{found.y} against {found.x}", conditions)
     return Figure(words, partial(figures.curve.curve_figure, found.lines, found.x, found.y))

@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from affcli import lab
-from affcli.cli.compare import Sessions, checked_by, conditions_named
+from affcli.cli.compare import Experiment, Sessions, checked_by, conditions_named
 from affcli.cli.database import opened
 from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database
 from affcli.cli.terminal import show_either
@@ -40,6 +40,7 @@ def _checked_correlation(correlation: float) -> float:
 
 def power(
     *,
+    experiment: Experiment = None,
     sessions: Sessions = None,
     differences: Annotated[
         list[float] | None,
@@ -83,9 +84,9 @@ def power(
     in affcli/analysis/README.md.
     """
     with opened(database) as store:
-        conditions = conditions_named(store, sessions, 1)
+        conditions = conditions_named(store, experiment, sessions, 1)
         if len(conditions) > 2:
-            raise UsageError("--session: one or two; compare has more than two")
+            raise UsageError("name one or two conditions with --session; compare has more than two")
         plans, empty = lab.conditions.planned(
             store, conditions, by, differences or DIFFERENCES, correlation, wanted
         )

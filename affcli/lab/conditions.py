@@ -8,12 +8,11 @@ from affcli.analysis.power import Plan, plan
 from affcli.core.names import one_of
 from affcli.core.records import SessionInfo
 from affcli.core.results import Cell, ConditionCounts
+from affcli.core.specs import LIVES
 from affcli.errors import UsageError
 from affcli.lab.sessions import finished_session
 from affcli.store import Store
 
-KINDS = ("reproduce",)
-"""The kinds of sessions whose robots can be compared."""
 BY: dict[str, tuple[str, ...]] = {
     "tool": ("tool", "shape"),
     "goal": ("goal",),
@@ -39,12 +38,25 @@ def sessions_named(store: Store, numbers: Sequence[int]) -> list[Condition]:
     """
     found = []
     for number in numbers:
-        session = finished_session(store, number, KINDS)
+        session = finished_session(store, number, LIVES)
         if session is not None:
             found.append(Condition(f"session {session.id}", session))
     if len(set(numbers)) < len(numbers):
         raise UsageError(f"--session {numbers[-1]}: named twice; name another one")
     return found
+
+
+def experiment_named(store: Store, name: str) -> list[Condition]:
+    """Return the conditions of an experiment.
+
+    Raises:
+        UsageError: there is none of that name, or it is not finished.
+    """
+    sessions = {session.id: session for session in store.sessions.all()}
+    found = store.experiments.named(name)
+    if found.status != "done":
+        raise UsageError(f"experiment {name!r} is not finished; go on: affcli experiment --resume")
+    return [Condition(one, sessions[number]) for one, number in found.conditions]
 
 
 def compared(

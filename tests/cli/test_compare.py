@@ -119,8 +119,12 @@ def test_figures(words: tuple[str, ...], says: str, database: Path, tmp_path: Pa
 
 
 REFUSED: list[tuple[int, tuple[str, ...], str]] = [
-    (2, ("compare",), "name sessions, as in --session 1 --session 2; finished reproductions: 1, 2"),
-    (2, ("compare", "--session", "1"), "name sessions, as in --session 1 --session 2"),
+    (
+        2,
+        ("compare",),
+        "name an experiment (there: none yet), or sessions, as in --session 1 --session 2 (finished: 1, 2",
+    ),
+    (2, ("compare", "--session", "1"), "or sessions, as in --session 1 --session 2"),
     (2, ("compare", "--session", "1", "--session", "1"), "--session 1: named twice"),
     (2, ("compare", *TWO, "--session", "9"), "no session 9; they are numbered 1 to 3"),
     (4, ("compare", *TWO, "--session", "0"), "--session 0: must lie in 1 to"),
@@ -129,8 +133,8 @@ REFUSED: list[tuple[int, tuple[str, ...], str]] = [
     (2, ("compare", *TWO, "--format", "word"), "no format 'word'"),
     (4, ("compare", *TWO, "--out", "a.docx"), "a.docx: name it *.md or *.tex or *.csv, or give"),
     (2, ("compare", *TWO, "--json", "--format", "csv"), "--json writes to stdout: leave out"),
-    (2, ("power",), "name sessions, as in --session 1; finished"),
-    (2, ("power", *TWO, "--session", "3"), "--session: one or two"),
+    (2, ("power",), "or sessions, as in --session 1 (finished"),
+    (2, ("power", *TWO, "--session", "3"), "name one or two conditions with --session"),
     (4, ("power", *TWO, "--difference", "0"), "--difference 0.0: must lie in 0.001 to 1000"),
     (4, ("power", *TWO, "--difference", "nan"), "--difference nan: must lie in"),
     (4, ("power", *TWO, "--power", "1"), "--power 1.0: must lie in 0.1 to 0.999"),
@@ -139,7 +143,7 @@ REFUSED: list[tuple[int, tuple[str, ...], str]] = [
         ("power", "--session", "1", "--correlation", "1"),
         "--correlation 1.0: must lie in",
     ),
-    (2, ("figure", "compare", "--out", "a.png"), "name sessions, as in --session 1 --session 2"),
+    (2, ("figure", "compare", "--out", "a.png"), "or sessions, as in --session 1 --session 2"),
     (2, ("figure", "curve", "--out", "a.png", *TWO, "--y", "x"), "no measure 'x'"),
 ]
 

@@ -77,6 +77,23 @@ def test_its_json_has_each_robots_successes(file: Path, lived: Path) -> None:
             }
 
 
+def test_its_conditions_are_compared_by_its_name(lived: Path, tmp_path: Path) -> None:
+    by_name, by_session = (
+        done("compare", *words, "--json", "--db", lived).json
+        for words in (("two",), ("--session", "1", "--session", "2"))
+    )
+    assert [one["name"] for one in by_name["conditions"]] == ["rough"]
+    assert by_name["against"] == {**by_session["against"], "name": "paper"}
+    for kind in ("totals", "cells", "same"):
+        assert [row["difference"] for row in by_name[kind]] == [
+            row["difference"] for row in by_session[kind]
+        ]
+    assert "paper against rough" in done("compare", "two", "--against", "rough", "--db", lived).out
+    assert "from the pairs of paper and rough" in done("power", "two", "--db", lived).out
+    for name in ("compare", "curve"):
+        done("figure", name, "two", "--out", tmp_path / f"{name}.png", "--db", lived)
+
+
 def test_two_workers_make_the_database_that_one_makes(
     file: Path, lived: Path, tmp_path: Path
 ) -> None:
