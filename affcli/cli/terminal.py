@@ -190,6 +190,7 @@ def progress(
             yield far.update
         return
     from rich.progress import BarColumn, Progress, ProgressColumn, Task, TextColumn
+    from rich.table import Column
     from rich.text import Text
 
     class Words(ProgressColumn):
@@ -199,7 +200,11 @@ def progress(
             del task
             return Text(far.words())
 
-    columns = (TextColumn("{task.description}"), BarColumn(bar_width=10), Words())
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=6),
+        Words(table_column=Column(no_wrap=True)),
+    )
     with Progress(*columns, console=_console(sys.stderr), transient=True) as shown:
         task = shown.add_task(description, total=total)
 
