@@ -260,7 +260,8 @@ def bars(
             return Text(_parts_within(far[task.fields["number"]].words(), room))
 
     names = Column(no_wrap=True, min_width=min(longest, console.width // 2))
-    columns = [TextColumn("{task.description}", table_column=names), BarColumn(10), Words()]
+    columns: list[ProgressColumn] = [TextColumn("{task.description}", table_column=names), BarColumn(10)]
+    columns.append(Words(table_column=Column(no_wrap=True)))
     if not shows_bars:
         del columns[1]
     with Progress(*columns, console=console, transient=True) as shown:

@@ -54,7 +54,7 @@ def test_on_a_narrow_terminal_rows_are_records(database: Path) -> None:
     "by", ["tool,goal", "tool", "start", "protocol", "task,protocol,goal,goal"]
 )
 def test_trials_are_told_apart_by_what_is_asked_for(by: str, database: Path) -> None:
-    value = done("compare", *TWO, "--by", by, "--json", "--db", database).json
+    value = done("compare", *TWO, "--by", by, "--json", "--db", database).result
     assert [row["difference"] for row in value["totals"]] == [0.5, 0.0]
     told = value["cells"] + value["same"]
     asked = set(by.split(",")) & {"tool", "goal", "start"}
@@ -96,7 +96,7 @@ def test_power_says_how_many_robots(database: Path) -> None:
     out = " ".join(ended.out.split())
     assert "extension of reach 0.53 12 6" in out
     assert "not told, for too few robots differ in them: tool adaptation" in out
-    one = done("power", "--session", "1", "--correlation", "0.5", "--json", "--db", database).json
+    one = done("power", "--session", "1", "--correlation", "0.5", "--json", "--db", database).result
     assert one["plans"][0]["needed"][0] == {"difference": 1.0, "robots": 6}
     assert one["known_from"] == "from session 1, correlation 0.5"
 

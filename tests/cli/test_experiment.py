@@ -59,7 +59,7 @@ def test_it_says_what_each_condition_gave(file: Path, lived: Path) -> None:
 
 
 def test_its_json_has_each_robots_successes(file: Path, lived: Path) -> None:
-    value: Any = done("experiment", file, "--db", lived, "--json").json
+    value: Any = done("experiment", file, "--db", lived, "--json").result
     assert (value["experiment"], value["robots"]) == ("two", 2)
     for condition in value["conditions"]:
         for kind, protocol in (
@@ -79,7 +79,7 @@ def test_its_json_has_each_robots_successes(file: Path, lived: Path) -> None:
 
 def test_its_conditions_are_compared_by_its_name(lived: Path, tmp_path: Path) -> None:
     by_name, by_session = (
-        done("compare", *words, "--json", "--db", lived).json
+        done("compare", *words, "--json", "--db", lived).result
         for words in (("two",), ("--session", "1", "--session", "2"))
     )
     assert [one["name"] for one in by_name["conditions"]] == ["rough"]
@@ -113,7 +113,7 @@ def test_a_dry_run_says_what_it_takes_and_saves_nothing(file: Path, tmp_path: Pa
     assert re.search(r"^trials +128$", shown, re.MULTILINE)
     assert re.search(r"^time on 2 workers, about +0 min \d\d s$", shown, re.MULTILINE)
     assert "Estimated from robot 0, which has just lived" in shown
-    value: Any = done(*words, "--json", cwd=tmp_path).json
+    value: Any = done(*words, "--json", cwd=tmp_path).result
     assert value["conditions"] == ["paper", "rough"]
     assert value["estimated_bytes"] == 2 * value["measured"]["bytes"] > 0
     assert value["estimated_seconds"] == value["measured"]["seconds"] > 0.0
