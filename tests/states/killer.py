@@ -113,14 +113,9 @@ class Killer:
         """
         out, err, log = (self.folder / name for name in ("out", "err", "log"))
         log.unlink(missing_ok=True)
-        request = {"args": args, "cwd": str(cwd), "env": dict(os.environ)}
-        request |= {
-            "kind": kind,
-            "number": number,
-            "out": str(out),
-            "err": str(err),
-            "log": str(log),
-        }
+        asked: dict[str, Any] = {"args": args, "env": dict(os.environ), "cwd": str(cwd)}
+        asked |= {"kind": kind, "number": number}
+        asked |= {"out": str(out), "err": str(err), "log": str(log)}
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         self._process.stdin.write(json.dumps(asked) + "\n")
