@@ -1,9 +1,9 @@
 """Commands killed at one of their writes: ``python -m tests.states.killer``.
 
-As ``tests.cli.warm``, whose requests it takes; beside these each has a number, before which write
-the command is killed, and a file in which each write becomes a line. Where strace is there the
-writes are the system calls, elsewhere SQLAlchemy's statements and Python's own changes of files.
-The answer to each line of JSON is the exit code, negative after a signal.
+As ``tests.cli.warm``, whose requests it takes; beside these each has a kind of write and a number,
+before which of its kind the command is killed, and a file in which each write becomes a line. Where
+strace is there the writes are the system calls, elsewhere SQLAlchemy's statements and Python's own
+changes of files. The answer to each line of JSON is the exit code, negative after a signal.
 """
 
 import ctypes
@@ -14,6 +14,7 @@ import shutil
 import signal
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -51,8 +52,10 @@ def traced(request: dict[str, Any]) -> int:
         ctypes.CDLL(None).prctl(*ANYBODY, 0, 0, 0)
         os.read(ours, 1)
         run(request)
-    kill = f"inject={CALLS}:signal=SIGKILL:when={request['kill']}"
-    arguments = ["-o", request["log"], "-e", f"trace={CALLS}", "-e", kill, "-p", str(child)]
+    arguments = ["-o", request["log"], "-e", f"trace={CALLS}", "-p", str(child)]
+    if request["kind"]:
+        kill = f"inject={request['kind']}:signal=SIGKILL:when={request['number']}"
+        arguments += ["-e", kill]
     with subprocess.Popen([str(STRACE), *arguments], stderr=subprocess.PIPE, text=True) as strace:
         assert strace.stderr is not None
         said = strace.stderr.readline()
@@ -68,13 +71,12 @@ def counted(request: dict[str, Any]) -> int:
     """Run a command that kills itself before a statement or a change of a file."""
     child = os.fork()
     if child == 0:
-        count, log = 0, os.open(request["log"], os.O_CREAT | os.O_WRONLY)
+        done, log = Counter[str](), os.open(request["log"], os.O_CREAT | os.O_WRONLY)
 
-        def write(name: str) -> None:
-            nonlocal count
-            count += 1
-            os.write(log, f"{name}\n".encode())
-            if count == request["kill"]:
+        def write(kind: str) -> None:
+            done[kind] += 1
+            os.write(log, f"{kind}\n".encode())
+            if (kind, done[kind]) == (request["kind"], request["number"]):
                 os.kill(os.getpid(), signal.SIGKILL)
 
         def audited(event: str, args: tuple[Any, ...]) -> None:
@@ -101,19 +103,22 @@ class Killer:
             text=True,
         )
 
-    def run(self, args: list[str], cwd: Path, kill: int) -> tuple[int, str, list[str]]:
-        """Run a command, killed before one of its writes unless it has fewer.
+    def run(
+        self, args: list[str], cwd: Path, kind: str = "", number: int = 0
+    ) -> tuple[int, str, list[str]]:
+        """Run a command, killed before the write of this kind and number if one is named.
 
         Returns:
             Its exit code, what it said on stderr, and its writes.
         """
         out, err, log = (self.folder / name for name in ("out", "err", "log"))
         log.unlink(missing_ok=True)
-        request = {"args": args, "cwd": str(cwd), "kill": kill, "env": dict(os.environ)}
-        request |= {"out": str(out), "err": str(err), "log": str(log)}
+        asked: dict[str, Any] = {"args": args, "env": dict(os.environ), "cwd": str(cwd)}
+        asked |= {"kind": kind, "number": number}
+        asked |= {"out": str(out), "err": str(err), "log": str(log)}
         assert self._process.stdin is not None
         assert self._process.stdout is not None
-        self._process.stdin.write(json.dumps(request) + "\n")
+        self._process.stdin.write(json.dumps(asked) + "\n")
         self._process.stdin.flush()
         code = int(self._process.stdout.readline())
         lines = log.read_text(errors="replace").splitlines() if log.exists() else []
