@@ -260,7 +260,10 @@ def bars(
             return Text(_parts_within(far[task.fields["number"]].words(), room))
 
     names = Column(no_wrap=True, min_width=min(longest, console.width // 2))
-    columns: list[ProgressColumn] = [TextColumn("{task.description}", table_column=names), BarColumn(10)]
+    columns: list[ProgressColumn] = [
+        TextColumn("{task.description}", table_column=names),
+        BarColumn(10),
+    ]
     columns.append(Words(table_column=Column(no_wrap=True)))
     if not shows_bars:
         del columns[1]

@@ -122,7 +122,7 @@ REFUSED: list[tuple[int, tuple[str, ...], str]] = [
     (
         2,
         ("compare",),
-        "name an experiment (there: none yet), or sessions, as in --session 1 --session 2 (finished: 1, 2",
+        "name an experiment (there: none yet), or sessions, as in --session 1 --session 2 (fini",
     ),
     (2, ("compare", "--session", "1"), "or sessions, as in --session 1 --session 2"),
     (2, ("compare", "--session", "1", "--session", "1"), "--session 1: named twice"),

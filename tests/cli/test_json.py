@@ -6,9 +6,11 @@ from pathlib import Path
 import pytest
 
 from affcli.cli.terminal import JSON_FORMAT
+from affcli.store import open_store
 from tests.cli.program import affcli, done
 from tests.cli.test_every_option import commands
 from tests.readmes import QUOTED, blocks, table_rows
+from tests.store.conditions import stored_conditions
 
 COMMANDS = "affcli/cli/README.md"
 (SHAPE,) = map(json.loads, blocks(COMMANDS, "json"))
@@ -34,6 +36,18 @@ GIVEN = {
     "runs show": "1",
 }
 """What a command needs to answer, or to answer soon."""
+
+
+EXPERIMENT = """
+[experiment]
+name = "one"
+question = "?"
+robots = 1
+[base]
+minutes = 3
+tools = ["stick"]
+trial.max_steps = 2
+"""
 
 
 def called(documented: str) -> str:
@@ -70,9 +84,8 @@ def keys_of(documented: str) -> list[str]:
     return [key for key in (*others, *keys[1:]) if key not in dropped]
 
 
-OF_A_DATABASE = [
-    one for one in DOCUMENTED if one.split()[0] not in {"camera", "list", "settings", "sql"}
-]
+OF_NO_USED_DATABASE = {"camera", "list", "settings", "sql", "compare", "power", "experiment"}
+OF_A_DATABASE = [one for one in DOCUMENTED if one.split()[0] not in OF_NO_USED_DATABASE]
 
 
 @pytest.mark.parametrize("documented", OF_A_DATABASE)
@@ -85,6 +98,23 @@ def test_results_have_the_keys_that_are_documented(
     else:
         results = answer(documented, used)
     assert {tuple(result) for result in results} == {tuple(keys_of(documented))}
+
+
+@pytest.mark.parametrize("documented", ["compare", "power"])
+def test_what_is_said_of_conditions_has_its_keys(documented: str, tmp_path: Path) -> None:
+    with open_store(tmp_path / "conditions.db", create=True, write=True) as store:
+        first, second, _ = stored_conditions(store)
+    named = (f"--session={first}", f"--session={second}")
+    (result,) = answer(documented, tmp_path / "conditions.db", *named)
+    assert list(result) == DOCUMENTED[documented]
+
+
+@pytest.mark.parametrize("documented", ["experiment --dry-run", "experiment FILE.toml"])
+def test_an_experiment_has_its_keys(documented: str, tmp_path: Path) -> None:
+    file = tmp_path / "one.toml"
+    file.write_text(EXPERIMENT)
+    (result,) = answer(documented, tmp_path / "one.db", file, "--workers", "1")
+    assert list(result) == DOCUMENTED[documented]
 
 
 @pytest.mark.parametrize("documented", ["list", "settings"])
