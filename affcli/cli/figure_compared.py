@@ -69,5 +69,5 @@ def curve(
         found = lab.courses.curves_of(store, conditions, y, x)
     if len({line.name for line in found.lines}) > MOST_COURSES:
         raise UsageError(f"{MOST_COURSES} conditions fit; name fewer with --session")
-    words = conditions_words(f"{found.y} against {found.x}", conditions)
+    words = conditions_words(f"{found.y.capitalize()} against {found.x}", conditions)
     return Figure(words, partial(figures.curve.curve_figure, found.lines, found.x, found.y))

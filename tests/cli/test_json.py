@@ -45,7 +45,7 @@ question = "?"
 robots = 1
 [base]
 minutes = 3
-tools = ["stick"]
+tools = ["t-hook"]
 trial.max_steps = 2
 """
 
