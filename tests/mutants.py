@@ -258,7 +258,7 @@ def learned(tests: list[str], folder: Path) -> Known:
     for n, code in forked(jobs, folder):
         if code:
             sys.exit(f"{files[n]} fails without a mutant:\n{(folder / str(n)).read_text()}")
-        sys.stderr.write(f"\r{files[n]}: seen what its tests execute")
+        sys.stderr.write(f"\r{files[n]}: seen what its tests execute".ljust(80))
     known = Known()
     for n in range(len(files)):
         for told in (folder / f"{n}.seconds").read_text(encoding="utf-8").splitlines():
@@ -307,7 +307,7 @@ def report(chosen: list[Mutant], known: Known, folder: Path) -> int:
             tests = len(known.order(mutant))
             sys.stdout.write(f"\nsurvived, {tests} tests\n{mutant.diff()}\n")
             sys.stdout.flush()
-        sys.stderr.write(f"\r{ends.total()} of {len(chosen)} mutants")
+        sys.stderr.write(f"\r{ends.total()} of {len(chosen)} mutants".ljust(80))
     sys.stdout.write(f"\n\n{'room':<12}{'found':>8}{'timed out':>12}{'survived':>10}\n")
     for room in ROOMS:
         found, late, survived = (ends[room, end] for end in ("found", "timed out", "survived"))
