@@ -34,8 +34,8 @@ def test_each_difference_stands_in_its_row_with_its_interval() -> None:
     assert figure.get_size_inches()[0] == ONE_COLUMN
     *_, cells = figure.axes
     assert [label.get_text() for label in cells.get_yticklabels()] == [
-        "stick, goal 1",
-        "t-hook, goal 1",
+        "Stick, goal 1",
+        "T-hook, goal 1",
     ]
     lines = [(line, np.column_stack(line.get_data())) for line in cells.lines]
     marks = {

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from affcli.analysis.paired import Comparison, Difference
+from affcli.core.results import Cell
 from affcli.report.figures.canvas import (
     BLUE,
     FAINT,
@@ -22,6 +23,7 @@ from affcli.report.figures.canvas import (
     canvas,
 )
 from affcli.report.figures.key import draw_key
+from affcli.report.figures.words import tool_words
 from affcli.report.paired import whole_words
 
 LOOKS = ((INK, "o"), (VERMILION, "s"), (BLUE, "^"), (GREEN, "D"), (PURPLE, "v"))
@@ -64,6 +66,11 @@ def _rows(part: Sequence[Difference]) -> list[Any]:
     return list(dict.fromkeys(one.cell for one in part))
 
 
+def _cell_words(cell: Cell) -> str:
+    """Return a cell in one line, with its tools as all figures spell them."""
+    return whole_words(cell._replace(tool=tool_words(cell.tool), shape=tool_words(cell.shape)))
+
+
 def _draw(axes: Axes, part: Sequence[Difference], names: Sequence[str]) -> None:
     """Draw the rows of one panel, the first on top."""
     cells = _rows(part)
@@ -74,7 +81,7 @@ def _draw(axes: Axes, part: Sequence[Difference], names: Sequence[str]) -> None:
     axes.set_yticks(
         range(len(cells)),
         [
-            whole_words(cell) + (f", of {part[0].trials:g}" if len(cells) == 1 else "")
+            _cell_words(cell) + (f", of {part[0].trials:g}" if len(cells) == 1 else "")
             for cell in cells
         ],
     )
