@@ -46,7 +46,7 @@ EXPERIMENTS = "experiments/README.md"
 OUR_FOLDERS = r"(?:affcli|tests|experiments|migrations)"
 LIGHTER = {
     "reproduce": ("--robots", "1", "--workers", "1", "--config", "leisurely.toml"),
-    "experiment": ("--dry-run",),
+    "experiment share.toml": ("--dry-run",),
     "learn --sensor camera": ("--behaviors", "60"),
 }
 """Options that are added to commands which would take a minute."""
@@ -88,6 +88,8 @@ def demo(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "leisurely.toml").write_text("[motion]\nhold = 100.0\n[trial]\nmax_steps = 2\n")
     for code in blocks(CHOICES, "toml"):
         (folder / "noisy.toml").write_text(code)
+    for code in blocks("README.md", "toml"):
+        (folder / "noise.toml").write_text(code)
     for code in blocks(EXPERIMENTS, "toml"):
         (folder / "share.toml").write_text(code)
     for name in ("a.db", "b.db", "shard1.db", "shard2.db"):
@@ -132,6 +134,8 @@ def ran(command: str, workplace: Path) -> str:
     words = shlex.split(command.replace(".venv/bin/", ""))[1:]
     if "--out" in words or "--html" in words:
         words += ["--force"] if "--force" in help_of(" ".join(words_of(command))) else []
+    if words[0] == "experiment" and words[1].startswith("experiments/"):
+        words += ["--dry-run"]
     for long, less in LIGHTER.items():
         if set(long.split()) <= set(words):
             words += less
