@@ -17,7 +17,7 @@ from affcli.core.specs import TrialRecord
 from affcli.core.tool import Tool
 from affcli.errors import one_line
 from affcli.report.sheet import Sheet
-from affcli.report.words import call_words, many
+from affcli.report.words import call_words, many, run_words
 
 
 def broken_json(run: LearningRunInfo, trials: Sequence[TrialRecord]) -> dict[str, Any]:
@@ -64,12 +64,14 @@ def broken_tables(run: LearningRunInfo, trials: Sequence[TrialRecord]) -> tuple[
     tried, beside = (tally.trials for tally in tallies)
     heading = f"{tried} trials each" if tried == beside else "trials"
     planner = "" if str(spec.planner) == PLANNER else f"; planner: {spec.planner}"
+    own = run_words(run.spec)
+    whose = "" if own == "defaults" else f"run {run.id}: {own}; "
     became, was = ("grown", "as it was") if grew else ("broken", "whole")
     comparison = Sheet(
         (heading, f"{became}: {spec.shape}", was),
         title=f"The {became} tool beside the {'one it was' if grew else 'whole one'}",
         left=(heading,),
-        caption=f"seen through: {spec.sensor}{planner}{f'{chr(10)}{grew}' if grew else ''}",
+        caption=f"{whose}seen through: {spec.sensor}{planner}{f'{chr(10)}{grew}' if grew else ''}",
     )
     for label, left, right in zip(_LABELS, *map(_figures, tallies), strict=True):
         comparison.add(label, left, right)

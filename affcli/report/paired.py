@@ -17,7 +17,8 @@ METHOD = (
     "95 % interval: of the mean change, Student's t; - where too few robots differ for one",
     "d: mean over standard deviation of the changes",
     "+/-: robots better and worse",
-    "p: exact sign-flip test, corrected by Holm for {tests} tests; * = significant at 5 %",
+    "p: exact sign-flip test, corrected by Holm in each table ({tests} tests); "
+    "* = significant at 5 %",
 )
 FIELDS = ("protocol", "task_set", "tool", "shape", "goal", "start")
 COLUMNS = (
@@ -226,11 +227,12 @@ def power_tables(
         wanted: the chance to see a difference.
     """
     differences = list(plans[0].needed) if plans else []
-    columns = ("trials", "deviation", *(f"d = {one:g}" for one in differences), "seen by as many")
+    columns = ("trials", "deviation", *(f"of {one:g}" for one in differences), "seen by as many")
     table = Sheet(
         columns,
         left=("trials",),
-        title=f"Robots needed to see a difference of d solved trials ({100 * wanted:g} % power)",
+        title="Robots needed to see a difference of so many solved trials "
+        f"({100 * wanted:g} % power)",
         caption=f"{how}; deviation: standard deviation of the paired differences; seen by as many: "
         "the smallest difference that as many robots as there are would show; two-sided at 5 %"
         + _corrected_words(plans),

@@ -22,6 +22,7 @@ from affcli.report.words import (
     movement_words,
     parts_words,
     reasons_words,
+    settings_words,
     trial_words,
 )
 
@@ -162,7 +163,7 @@ def solve_table(
         tool: None if other_parts(runs[tool].spec) else papers_successes(spec)
         for tool, spec in specs.items()
     }
-    used = [f"run {runs[tool].id} ({spec.sensor})" for tool, spec in specs.items()]
+    used = [_used_words(runs[tool], spec) for tool, spec in specs.items()]
     planners = {str(spec.planner) for spec in specs.values()} - {PLANNER}
     notes = [", ".join(used), *(f"planner: {planner}" for planner in sorted(planners))]
     compared = any(count is not None for count in paper.values())
@@ -180,6 +181,13 @@ def solve_table(
         beside = f"{paper[tool]}/{STARTS}" if paper[tool] is not None else "-"
         table.add(tool, *cells, f"{solved}/{tried}", *((beside,) if compared else ()))
     return table
+
+
+def _used_words(run: LearningRunInfo, spec: TrialSpec) -> str:
+    """Return which run's table was used, and what of that run is not the usual."""
+    settings = settings_words(run.spec.settings)
+    own = ("" if settings == "defaults" else settings, parts_words(run.spec))
+    return f"run {run.id} ({', '.join(filter(None, (spec.sensor, *own)))})"
 
 
 def counts_tables(counts: Sequence[GoalCounts], runs: Mapping[int, LearningRunInfo]) -> list[Sheet]:

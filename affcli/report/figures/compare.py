@@ -105,7 +105,7 @@ def _draw(axes: Axes, part: Sequence[Difference], names: Sequence[str]) -> None:
 def _change_words(result: Comparison) -> str:
     """Return what is drawn."""
     other = result.others[0].name if len(result.others) == 1 else "each condition"
-    return f"solved by a robot: {other} less {result.against.name}"
+    return f"solved by a robot: {other} minus {result.against.name}"
 
 
 def _key(result: Comparison, names: Sequence[str]) -> list[tuple[Artist, str]]:
