@@ -134,11 +134,14 @@ def learn_all(
     """
     from affcli.lab.workers import Failed, working
 
+    found = {run.id: run for run in runs}
     left = [run for run in runs if run.status != "done"]
     with working(next_chunk, min(workers, len(left)), warn) as chunks_of:
         while left:
-            saved = []
-            for run, chunk in zip(left, chunks_of(left), strict=True):
+            # Those that are behind, as after an interruption: the order is as if there were none.
+            behind = min(run.behaviors for run in left)
+            turn = [run for run in left if run.behaviors == behind]
+            for run, chunk in zip(turn, chunks_of(turn), strict=True):
                 if isinstance(chunk, Failed):
                     raise chunk.error
                 store.learning.append(
@@ -151,9 +154,9 @@ def learn_all(
                     now=now(),
                     calibration=chunk.calibration,
                 )
-                saved.append(store.learning.run(run.id))
-                yield saved[-1]
-            left = [run for run in saved if run.status != "done"]
+                found[run.id] = store.learning.run(run.id)
+                yield found[run.id]
+            left = [run for run in found.values() if run.status != "done"]
 
 
 def next_chunk(info: LearningRunInfo) -> Chunk:

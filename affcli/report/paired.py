@@ -17,7 +17,7 @@ METHOD = (
     "95 % interval: of the mean change, Student's t; - where too few robots differ for one",
     "d: mean over standard deviation of the changes",
     "+/-: robots better and worse",
-    "p: exact sign-flip test, corrected by Holm in each table ({tests} tests); "
+    "p: exact sign-flip test, corrected by Holm in each table ({tests} tests)",
     "* = significant at 5 %",
 )
 FIELDS = ("protocol", "task_set", "tool", "shape", "goal", "start")

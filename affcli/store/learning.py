@@ -229,7 +229,11 @@ class Learning:
         require_kept(self.database, "behaviors", learning_run.c.id == run_id)
         wanted = sa.select(behavior).where(b.learning_run_id == run_id, b.change_detected == 1)
         made = self.database.mappings(wanted)
-        if len(made) < self.run(run_id).rows:
+        rows = self.database.mappings(
+            sa.select(affordance.c.step).filter_by(learning_run_id=run_id)
+        )
+        known, count = {row["step"] for row in made}, self.run(run_id).rows
+        if len(made) < count or any(row["step"] not in known for row in rows):
             raise DatabaseError(
                 f"learning run {run_id} lacks behaviors that made its rows; restore a copy of the "
                 "database"

@@ -56,7 +56,8 @@ def contents(database: Path) -> Contents:
     """Return all records of a database, without what may change later."""
     held: Contents = {}
     with closing(sqlite3.connect(database)) as driver:
-        tables = driver.execute("SELECT name FROM sqlite_master WHERE type = 'table'").fetchall()
+        wanted = "SELECT name FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite_%'"
+        tables = driver.execute(wanted).fetchall()
         for (table,) in tables:
             about = driver.execute(f"PRAGMA table_info({table})").fetchall()
             kept = [name for _, name, *_ in about if name not in CHANGING.get(table, ())]

@@ -216,7 +216,7 @@ USAGE: dict[str, tuple[tuple[str, ...], str]] = {
         "give one of --trial, --run and --pattern",
     ),
     "run and trial": (("--run", "1", "--trial", "1", "--out", "v.png"), "give one of --trial, "),
-    "trial in words": (("--trial", "first", "--out", "v.png"), "'--trial'"),
+    "trial in words": (("--trial", "first", "--out", "v.png"), "--trial "),
     "unknown trial": (("--trial", "99", "--out", "v.png"), "no trial 99; they are numbered 1 to "),
     "unknown step": (
         ("--trial", "1", "--step", "99", "--out", "v.png"),

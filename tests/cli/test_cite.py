@@ -76,7 +76,7 @@ BASH = shutil.which("bash")
 COMPLETED = {
     "affcli le": ["learn"],
     "affcli learn --re": ["--repertoire", "--resume"],
-    "affcli db ": ["upgrade", "backup", "check", "info"],
+    "affcli db ": ["upgrade", "backup", "merge", "check", "info"],
     "affcli table export --fo": ["--format", "--force"],
     "affcli learn --tool t": ["t-stick", "t-hook"],
     "affcli learn --tool ": list(parts("tools")),

@@ -147,7 +147,7 @@ def test_a_run_that_cannot_be_read_is_named_and_others_are_shown(column: str, us
         out = ("--out", used.with_name("new.png")) if line.startswith("camera") else ()
         done(*line.split(), *out, "--db", used)
     found = affcli("db", "check", "--json", "--db", used)
-    assert (found.code, [one["example"] for one in found.json if one["wrong"]]) == (3, ["run 2"])
+    assert (found.code, [one["example"] for one in found.results if one["wrong"]]) == (3, ["run 2"])
 
 
 @pytest.mark.parametrize("changes", NAMES.values(), ids=NAMES.keys())
@@ -207,6 +207,7 @@ def test_a_column_that_is_missing_is_named_by_who_needs_it(change: str, small: P
 def test_records_that_contradict_one_another_are_told(used: Path) -> None:
     """The next session takes the number of one that is gone, whose trials are still there."""
     tamper(used, "DELETE FROM session")
+    tamper(used, "DELETE FROM sqlite_sequence WHERE name = 'session'")
     line = refused(3, "break-tool", "--db", used)
     assert "UNIQUE constraint failed" in line
     assert "its records contradict one another" in line

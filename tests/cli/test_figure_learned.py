@@ -266,5 +266,5 @@ def test_a_run_that_was_killed_before_its_first_behavior_does_not_keep_others_fr
     with open_store(learned, create=False, write=True) as store:
         store.learning.begin(learning_spec("l-hook", seed=9), {}, NOW)
     out = ("--db", learned, "--out", tmp_path / "a.svg")
-    assert "learning of T-hook (run 1), Stick (run 2)" in done("figure", "learning", *out).err
+    assert "Learning over robot time; 2 learning runs; " in done("figure", "learning", *out).err
     assert "run 3 has not begun" in refused(2, "figure", "learning", "--run", "3", *out, "--force")

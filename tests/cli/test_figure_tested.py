@@ -127,7 +127,7 @@ def test_a_trial_without_steps_has_none_to_name(used: Path) -> None:
 
 def test_strange_names_are_letters_in_a_figure(used: Path) -> None:
     """Neither mathematics nor tags; the line that says what was drawn stays one line."""
-    strange = "'<script>$\\frac{1}{ \x1b[31m 机' || char(10) || hex(zeroblob(5000))"
+    strange = "'<script>$\\frac{1}{ \x1b[31m 机' || char(10) || hex(zeroblob(30))"
     change(used, f"UPDATE affordance SET exploratory_behavior = {strange}")
     out = used.with_name("f.svg")
     assert figure("trial", "9", "--db", used, "--out", out).endswith("f.svg\n")
@@ -153,7 +153,7 @@ USAGE: dict[str, tuple[tuple[str, ...], str]] = {
     ),
     "adaptation of another kind": (
         ("adaptation", "--session", "1", "--out", "f.png"),
-        "session 1 is of affcli solve, not of break-tool or reproduce; try --session 2",
+        "session 1 is of affcli solve, not of break-tool or reproduce or experiment; try --ses",
     ),
 }
 

@@ -9,11 +9,12 @@ from threading import Timer
 from types import SimpleNamespace
 
 import pytest
-from tests.attack.attacks import has_database, named, plainly
 
 from affcli.store import waiting
+from tests.attack.attacks import has_database, named, plainly
 from tests.cli.program import affcli, names_in, one_printable_line
 from tests.fuzz.commands import Command
+from tests.states.commands import EXPERIMENT
 
 COMMANDS = [command for command in named() if has_database(command)]
 HELD_BY = "another process, probably another affcli"
@@ -41,6 +42,7 @@ def hurried(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_every_command_waits_says_for_whom_and_gives_up_after_what_it_says(
     command: Command, learned: Path
 ) -> None:
+    (learned.parent / "two.toml").write_text(EXPERIMENT)
     ended = affcli(*plainly(command), "--db", learned, cwd=learned.parent)
     assert ended.code == 3, ended
     lines = ended.err.splitlines()

@@ -33,7 +33,11 @@ def drawn(folder: Path, *python: str, **changes: str) -> Ended:
 
 def said(folder: Path) -> Ended:
     """Return how a figure ends that nothing disturbs."""
-    return Ended(0, "", f"5 tools, and a t-hook that became l-hook: {folder / 'a.pdf'}\n")
+    return Ended(
+        0,
+        "",
+        f"The tools, to scale; T-hook that became L-hook; default settings: {folder / 'a.pdf'}\n",
+    )
 
 
 @pytest.mark.parametrize(

@@ -226,7 +226,7 @@ def test_two_at_once_take_turns(learned: Path) -> None:
         (("--rows", "0"), 4, "--rows 0: must lie in 1 to 100000"),
         (("--rows", "-3"), 4, "--rows -3: must lie in 1 to 100000"),
         (("--rows", "1" + "0" * 30), 4, "must lie in 1 to 100000"),
-        (("--rows", "many"), 2, "'--rows'"),
+        (("--rows", "many"), 2, "--rows "),
         (("--seed", "-1"), 4, "--seed -1: must lie in 0 to 2^63 - 1"),
         (("--seed", str(2**63)), 4, "must lie in 0 to 2^63 - 1"),
         (("--sensor", "eyes"), 2, "no sensor 'eyes'"),

@@ -193,7 +193,7 @@ def test_the_key_is_of_what_robots_are_functions_of(read: Any) -> None:
             f"{HEAD}[base]\ntools.part_width = 5\ntools.hook_length = 4\n",
             "settings: tools.part_width = 5 must be less than tools.hook_length = 4",
         ),
-        ("[experiment\n", "not TOML: "),
+        ("[experiment\n", "not TOML of settings: "),
         ("a.b.c.d.e.f = 1\n", "not TOML of settings: more than 4 dots"),
     ],
 )

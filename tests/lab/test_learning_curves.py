@@ -47,7 +47,7 @@ def test_a_run_that_has_not_begun_has_no_curve(store: Store) -> None:
 
 def test_robots_of_a_reproduction_are_summed_up_by_tool(store: Store) -> None:
     """LEISURELY robots, whose hour holds few behaviors."""
-    taken(reproducing(store, LEISURELY, 2, 7), 2)
+    taken(reproducing(store, LEISURELY, 2, 7), 3)
     words = robots_words(curves_of_robots(store, 1)[0], 1).caption
     assert words.startswith("session 1 (reproduce, unfinished), 1 robot, seed 7; not default: ")
     counted(reproducing(store, LEISURELY, 2, 7))

@@ -10,6 +10,7 @@ from matplotlib.text import Text
 
 from affcli.analysis.courses import Course, Line, Point, course_line, swept_line
 from affcli.analysis.paired import Comparison
+from affcli.report.captions import comparison_words
 from affcli.report.figures.canvas import INK, ONE_COLUMN, TWO_COLUMNS, encoded
 from affcli.report.figures.compare import compare_figure
 from affcli.report.figures.curve import curve_figure
@@ -50,8 +51,8 @@ def test_each_difference_stands_in_its_row_with_its_interval() -> None:
     assert stick.interval is None
     bars = [tuple(at[:, 0]) for _, at in lines if len(at) == 2 and at[0][1] == 1.0]
     assert bars == [hook.interval]
-    assert "not drawn: 1 the same in all robots" in "\n".join(texts(figure))
-    assert "solved by a robot: two moves less paper" in texts(figure)
+    assert "not drawn: 1 cell the same in all robots" in comparison_words(ONE).caption
+    assert "solved by a robot: two moves minus paper" in texts(figure)
 
 
 def test_several_conditions_differ_in_mark_and_colour() -> None:
@@ -103,7 +104,7 @@ def test_the_tables_fit_the_screen(columns: int) -> None:
     words = " ".join(text.split())
     for name in ("two moves", "three moves"):
         assert f"{name} against paper: 12 pairs of robots" in words
-    assert "corrected by Holm for 4 and 4 tests" in words
+    assert "corrected by Holm in each table (4 and 4 tests)" in words
 
 
 def test_marks_of_markdown_and_latex_are_escaped() -> None:

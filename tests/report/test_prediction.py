@@ -114,6 +114,6 @@ def test_whole_tables_stand_in_one_row_each() -> None:
     table = predictions_table([("robot 3", "t-hook", grown), ("seed 0", "stick", HAND_MADE[3:])])
     assert table.rows[0][:4] == ("robot 3", "t-hook", "6", "3")
     assert table.rows[0][4:] == (
-        *("0.67 (0.21 to 0.94)", "0.33 (0.06 to 0.79)", "0.0", "0.0", "1.00", "1.00"),
+        *("0.67 (0.09 to 0.99)", "0.33 (0.01 to 0.91)", "0.0", "0.0", "1.00", "1.00"),
     )
-    assert table.rows[1] == ("seed 0", "stick", "3", "0", "-", "0.33 (0.06 to 0.79)", *("-",) * 4)
+    assert table.rows[1] == ("seed 0", "stick", "3", "0", "-", "0.33 (0.01 to 0.91)", *("-",) * 4)

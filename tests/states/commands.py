@@ -19,6 +19,23 @@ DATABASE = "my.db"
 """The database of every command here, in a folder of its own."""
 SETTINGS = "[motion]\nhold = 60.0\n[trial]\nmax_steps = 4\n"
 """An hour holds some thirty behaviors, and trials are given up soon."""
+EXPERIMENT = """
+[experiment]
+name = "two"
+question = "Is what conditions share learned once?"
+robots = 2
+[base]
+minutes = 4
+tools = ["t-hook"]
+trial.max_steps = 2
+[[condition]]
+name = "paper"
+[[condition]]
+name = "fewer"
+planner = "nested-query:share=0.05"
+"""
+OTHER = "other.db"
+"""What is merged: the database that the commands before made."""
 CHUNK = 20
 """Behaviors saved at once, so that a short run is saved in several chunks."""
 
@@ -42,10 +59,11 @@ class Writing:
     @property
     def args(self) -> list[str]:
         """The words of the command."""
-        return called(self.line)
+        return shlex.split(self.line) if "--into" in self.line else called(self.line)
 
 
 LEARN = "learn --tool stick --tool t-hook --behaviors 60 --set trial.max_steps=4"
+LIVED = "experiment two.toml --workers 1"
 USED = (LEARN, "solve --goal 2 --start 1 --tool t-hook")
 
 WRITING = {
@@ -55,6 +73,10 @@ WRITING = {
     "break-tool": Writing("break-tool", (LEARN,), anew=True),
     "verify --update": Writing("verify --update --rows 4", (LEARN,), anew=True),
     "reproduce": Writing("reproduce --robots 2 --workers 1 --config settings.toml"),
+    "experiment": Writing(LIVED),
+    "runs note": Writing("runs note 1 seen", (LEARN,)),
+    "runs delete": Writing("runs delete 2 --yes", USED),
+    "db merge": Writing(f"db merge {OTHER} --into {DATABASE}", (LIVED,)),
     "db upgrade": Writing("db upgrade", revision="0003"),
     "db upgrade, from the first": Writing("db upgrade", revision="0001"),
     "db backup": Writing("db backup --force", (LEARN,)),
@@ -66,7 +88,10 @@ WRITING = {
 PLACES = {"--out", "--html", "--gif"}
 """Options that name a file to be written."""
 ENDINGS = {"figure": "svg", "camera": "png", "table": "csv", "--html": "html", "--gif": "gif"}
+ENDINGS |= {"compare": "md"}
 USUAL = {"predict": "--pushes 2", "verify": "--rows 2", "figure prediction": "--pushes 2"}
+USUAL |= dict.fromkeys(("compare", "figure compare"), "--session 1 --session {session}")
+USUAL |= dict.fromkeys(("power", "figure curve"), "--session {session}")
 USUAL |= {f"camera view {one}": "--step 1 --out out.png" for one in ("--run", "--trial")}
 USUAL |= {"camera view --after": "--trial {trial} --step 1 --out out.png"}
 USUAL |= {f"replay {one}": "{trial} --speed 100" for one in ("--gif", "--json")}
@@ -91,7 +116,7 @@ def commands(group: Any = program, path: tuple[str, ...] = ()) -> Iterator[tuple
             yield from commands(command, (*path, name))
         else:
             params = command.loaded().params
-            if any("--db" in one.opts for one in params):
+            if any({"--db", "--into"} & set(one.opts) for one in params):
                 yield " ".join((*path, name)), params
 
 
@@ -135,7 +160,8 @@ def _given(one: Any, name: str) -> str:
         return f"{option} out.{ending}"
     if one.metavar == "QUERY":
         return "'select * from affordance_table'"
-    table = "trial" if name == "figure trial" else LATEST.get(option) or LATEST[one.metavar]
+    named = {"figure trial": "trial", "runs show": "learning_run"}
+    table = named.get(name) or LATEST.get(option) or LATEST[one.metavar]
     return f"{option} {{{table}}}"
 
 

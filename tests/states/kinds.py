@@ -19,7 +19,7 @@ import sqlalchemy as sa
 
 from affcli.store.database_file import REVISION
 from tests.cli.program import done
-from tests.states.commands import DATABASE, SETTINGS, Writing, called
+from tests.states.commands import DATABASE, EXPERIMENT, OTHER, SETTINGS, Writing, called
 
 OLD_DATABASES = Path(__file__).parents[1] / "store" / "databases"
 
@@ -40,7 +40,8 @@ class State:
 
 
 SOME_TRIAL = "SELECT 1 FROM trial t WHERE t.session_id = s.id"
-SOME_ROBOT = "SELECT count(DISTINCT robot) FROM learning_run r WHERE r.session_id = s.id"
+SOME_ROBOT = "SELECT count(DISTINCT robot) FROM trial t WHERE t.session_id = s.id"
+LIVES = "IN ('reproduce', 'experiment')"
 RUNNING = "SELECT 1 FROM session s WHERE status <> 'done' AND kind"
 TRIED = "SELECT 1 FROM step p WHERE p.trial_id = t.id"
 TAKEN_BACK = """
@@ -74,23 +75,23 @@ STATES = {
     ),
     "session without trials": State(
         "`solve` or `break-tool`, before the first trial is saved.",
-        f"{RUNNING} <> 'reproduce' AND NOT EXISTS ({SOME_TRIAL})",
+        f"{RUNNING} NOT {LIVES} AND NOT EXISTS ({SOME_TRIAL})",
     ),
     "session with trials": State(
         "`solve` or `break-tool`, after the first trial, or before the session is marked as done.",
-        f"{RUNNING} <> 'reproduce' AND EXISTS ({SOME_TRIAL})",
+        f"{RUNNING} NOT {LIVES} AND EXISTS ({SOME_TRIAL})",
     ),
     "reproduction without robots": State(
-        "`reproduce`, before the first robot is saved.",
-        f"{RUNNING} = 'reproduce' AND ({SOME_ROBOT}) = 0",
+        "`reproduce` or `experiment`, before the first robot is saved.",
+        f"{RUNNING} {LIVES} AND ({SOME_ROBOT}) = 0",
     ),
     "reproduction with robots": State(
-        "`reproduce`, between two robots.",
-        f"{RUNNING} = 'reproduce' AND ({SOME_ROBOT}) BETWEEN 1 AND robots - 1",
+        "`reproduce` or `experiment`, between two robots.",
+        f"{RUNNING} {LIVES} AND ({SOME_ROBOT}) BETWEEN 1 AND robots - 1",
     ),
     "reproduction with all robots": State(
-        "`reproduce`, before it is marked as done.",
-        f"{RUNNING} = 'reproduce' AND ({SOME_ROBOT}) = robots",
+        "`reproduce` or `experiment`, before it is marked as done.",
+        f"{RUNNING} {LIVES} AND ({SOME_ROBOT}) = robots",
     ),
     "pages to take back": State("Any command that writes, within a transaction."),
     "older schema": State("`db upgrade`, before the new schema is saved."),
@@ -165,10 +166,13 @@ def prepare(command: Writing, folder: Path) -> None:
     """Make a folder in which a command can be given."""
     folder.mkdir()
     (folder / "settings.toml").write_text(SETTINGS)
+    (folder / "two.toml").write_text(EXPERIMENT)
     if command.revision:
         shutil.copyfile(OLD_DATABASES / f"{command.revision}.db", folder / DATABASE)
     for line in command.before:
         done(*called(line), cwd=folder)
+    if OTHER in command.line:
+        (folder / DATABASE).rename(folder / OTHER)
 
 
 def states_of(command: Writing, folder: Path) -> Iterator[Path]:

@@ -54,7 +54,7 @@ def test_every_command_reads_what_a_kill_left(
     if (folder / DATABASE).exists():
         assert contents_if_any(folder) == contents_if_any(copy)
     if name in NAMED:
-        said = done("db", "check", "--json", "--db", DATABASE, cwd=folder).json
+        said = done("db", "check", "--json", "--db", DATABASE, cwd=folder).results
         assert any(NAMED[name] in one["example"] for one in said if one["unfinished"])
         assert not any(one["wrong"] for one in said)
 
@@ -120,7 +120,7 @@ def require_whole(command: Writing, folder: Path, whole: Path) -> None:
         assert contents(folder / DATABASE) == contents(whole / DATABASE)
     elif "verify" not in command.line:
         done("replay", "--all", *database, cwd=folder)
-    said = done("db", "check", "--json", *database, cwd=folder).json
+    said = done("db", "check", "--json", *database, cwd=folder).results
     assert not any(one["wrong"] for one in said)
 
 

@@ -178,6 +178,7 @@ def test_info_looks_at_any_revision(database: Path) -> None:
     info = database_info(database)
     assert (info.revision, info.code_revision) == (REVISION, REVISION)
     assert info.counts == {
+        "experiments": 0,
         "sessions": 0,
         "learning runs": 1,
         "behaviors": 9,

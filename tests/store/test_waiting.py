@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from affcli.errors import DatabaseError
-from affcli.store import check, database_info, lock_retry, open_store, run_sql, tell_of_waiting
+from affcli.store import check, database_info, open_store, run_sql, tell_of_waiting, waiting
 from affcli.store.waiting import lock_holder
 
 PATIENCE = 0.6
@@ -46,7 +46,7 @@ def locked(database: Path) -> Iterator[Path]:
 def told(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """What is said of waiting."""
     said: list[str] = []
-    monkeypatch.setattr(lock_retry, "_listeners", [])
+    monkeypatch.setattr(waiting, "_say", str)
     tell_of_waiting(said.append)
     return said
 
@@ -66,7 +66,7 @@ def test_a_lock_is_given_up_after_the_time_that_is_said(
 def test_it_is_said_once_for_whom_one_waits(
     locked: Path, told: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(lock_retry, "SILENT", 0.1)
+    monkeypatch.setattr(waiting, "SILENT", 0.1)
     with pytest.raises(DatabaseError):
         info(locked)
     (line,) = told
