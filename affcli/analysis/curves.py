@@ -77,17 +77,22 @@ class Band:
     mean_high: Sequence[float]
 
     @classmethod
-    def of(cls, lines: Sequence[Sequence[float]]) -> "Band":
-        """Summarise lines of one length, one for each robot; NaN where a robot has none."""
-        points = [_point(values) for values in zip(*lines, strict=True)]
+    def of(cls, lines: Sequence[Sequence[float]], most: float = math.inf) -> "Band":
+        """Summarise lines of one length, one for each robot; NaN where a robot has none.
+
+        Args:
+            lines: of values from 0 on.
+            most: no value lies above.
+        """
+        points = [_point(values, most) for values in zip(*lines, strict=True)]
         return cls(*([point[i] for point in points] for i in range(5)))
 
 
-def _point(values: Sequence[float]) -> tuple[float, float, float, float, float]:
+def _point(values: Sequence[float], most: float) -> tuple[float, float, float, float, float]:
     """Return the numbers of a band at one time."""
     if any(map(math.isnan, values)):
         return (math.nan,) * 5
-    certain = mean_interval(values)
+    certain = mean_interval(values, 0.0, most)
     spread = quantile(values, LOW), quantile(values, HIGH)
     return fmean(values), *spread, *(certain or (math.nan, math.nan))
 
@@ -119,5 +124,5 @@ class ToolCurves:
             len(curves),
             curves[0].minutes[:common],
             Band.of([curve.rows[:common] for curve in curves]),
-            Band.of([curve.share[:common] for curve in curves]),
+            Band.of([curve.share[:common] for curve in curves], 1.0),
         )

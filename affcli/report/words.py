@@ -25,7 +25,7 @@ def many(count: int, noun: str) -> str:
 
 def few_robots_note(robots: int) -> str:
     """Return that robots are too few for intervals; empty when they are not."""
-    return f"too few robots for intervals ({FEWEST} or more)" * (robots < FEWEST)
+    return f"too few robots for intervals: it takes {FEWEST}" * (robots < FEWEST)
 
 
 def spread_words(robots: int) -> str:

@@ -88,7 +88,7 @@ def test_a_reproduction_of_few_robots_has_no_intervals(name: str, reproduced: Pa
         out = reproduced.with_name("f.png")
         said = figure(name, *session, "--db", reproduced, "--out", out, "--force")
         assert "session 1 (reproduce), 2 robots, seed " in said
-        assert "too few robots for intervals (5 or more)" in said
+        assert "too few robots for intervals: it takes 5" in said
 
 
 @pytest.mark.parametrize("steps", ["1", "1-2", "2-2"])

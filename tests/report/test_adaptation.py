@@ -210,7 +210,7 @@ def test_without_intervals_there_are_no_bands() -> None:
     assert words.title == "Adaptation: T-hook that became L-hook"
     assert words.caption == (
         "2 trials with the broken tool; session 3 (reproduce), 2 robots, seed 1000; "
-        "default settings; too few robots for intervals (5 or more)"
+        "default settings; too few robots for intervals: it takes 5"
     )
     assert "too few" not in adaptation_words(COURSE).caption
 

@@ -129,7 +129,7 @@ def test_of_fewer_than_forty_robots_each_is_shown() -> None:
     figure = results_figure(results_of_many(FOUR_ROBOTS))
     words = words_in(figure)
     assert (
-        "too few robots for intervals (5 or more)"
+        "too few robots for intervals: it takes 5"
         in results_words(results_of_many(FOUR_ROBOTS)).caption
     )
     assert not {"mean with its 95 % interval, where it has one", "central 95 % of robots"} & words

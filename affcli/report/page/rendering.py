@@ -66,6 +66,7 @@ def render(content: Content, command: str) -> str:
         finalize=_printable,
         keep_trailing_newline=True,
     )
+    pages.globals["spread_words"] = spread_words
     pages.filters["capitalize_first"] = lambda text: text[:1].upper() + text[1:]
     sources = ("style.css", "tables.js", "saving.js", "player.js")
     style, tables, saving, player = (_source(pages, name) for name in sources)
