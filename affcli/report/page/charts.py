@@ -18,7 +18,8 @@ def charts(
     """Return a chart for each tool, all with the same axes, in the order of the tools.
 
     Its lines are in units of the chart, y upward: for each run whose it is, how it went in words,
-    and its course; then the mean and the spread of all robots (`affcli.report.words.spread_words`), empty without a reproduction.
+    and its course; then the mean and the spread of all robots (see `spread_words`), empty without
+    a reproduction.
     """
     timed = [(one, curves[one.run.id]) for one in tools if one.run.id in curves]
     minutes = max((curve.minutes[-1] for curve in curves.values()), default=1.0)
