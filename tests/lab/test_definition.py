@@ -226,7 +226,7 @@ def test_as_many_conditions_as_there_may_be_can_be_stored(read: Any, store: Stor
             "settings: tools.part_width = 5 must be less than tools.hook_length = 4",
         ),
         ("[experiment\n", "not TOML: "),
-        ("a.b.c.d.e.f = 1\n", "not TOML of settings: more than 4 dots"),
+        ("a.b.c.d.e.f = 1\n", "not TOML: more than 4 dots"),
     ],
 )
 def test_all_that_is_wrong_is_found_and_its_place_named(
