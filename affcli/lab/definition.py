@@ -164,7 +164,7 @@ def _hours(value: object, of_an_hour: float) -> float:
         raise BadInputError(
             f"{one_line(value, 40)} must be a number of more than 0 and at most {most:g}"
         )
-    return value / of_an_hour  # type: ignore[operator,no-any-return]
+    return value / of_an_hour  # type: ignore[operator]
 
 
 def _named_conditions(tables: object, source: str) -> list[tuple[str, str, Said]]:
