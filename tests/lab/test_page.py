@@ -310,7 +310,7 @@ def test_a_robot_of_one_s_own_comes_before_those_of_a_reproduction(reproduced: S
 def test_a_half_finished_reproduction_is_shown_with_the_robots_that_are_saved(
     store: Store,
 ) -> None:
-    taken(reproducing(store, LEISURELY, 5, 7), 3)
+    taken(reproducing(store, LEISURELY, 5, 7), 4)
     content = content_of(store)
     assert content.robot == "robot 0 of 2, seed 7"
     assert content.reproduction is not None
