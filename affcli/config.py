@@ -362,5 +362,5 @@ def _toml(text: str, source: str) -> dict[str, Any]:
         return toml_value(text)
     except ValueError as error:
         raise BadInputError(
-            f"{source}: not TOML of settings: {one_line(error)}; write [section] and key = value"
+            f"{source}: not TOML: {one_line(error)}; write [section] and key = value"
         ) from error

@@ -114,6 +114,20 @@ class Breaking:
     grew: bool = False
 
 
+class ExperimentRuns(NamedTuple):
+    """How much an experiment is.
+
+    Args:
+        experiment: its name.
+        conditions: how many.
+        learning_runs: how many its robots made.
+    """
+
+    experiment: str
+    conditions: int
+    learning_runs: int
+
+
 @dataclass(frozen=True, slots=True)
 class Overview:
     """What a database holds.
@@ -126,6 +140,7 @@ class Overview:
         trials: all trials of these sessions that count.
         reproductions: the finished ones, oldest first.
         invalid: how many trials of these sessions count for nothing: their simulation failed.
+        experiments: those that have robots, oldest first: they are reported by other commands.
     """
 
     learned: Sequence[tuple[LearningRunInfo, Sequence[BehaviorGroup]]]
@@ -135,6 +150,7 @@ class Overview:
     trials: int
     reproductions: Sequence[Reproduction]
     invalid: int = 0
+    experiments: Sequence[ExperimentRuns] = ()
 
 
 def goal_counts(results: Iterable[Tried], runs: Iterable[LearningRunInfo]) -> list[GoalCounts]:

@@ -1,5 +1,6 @@
 """The commands of ``affcli``: what the help lists, and where each is found when it is run."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 
@@ -323,6 +324,19 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
     ),
 }
 """The commands under the headings of the help, in its order."""
+
+
+OWN = ("--shard", "--keep")
+"""Options that --resume alone does not know, at least before a robot is saved."""
+
+
+def how_it_goes_on(words: Sequence[str]) -> str:
+    """Return how a command goes on after an interruption, in words after a comma; empty if not."""
+    if not words or not goes_on(words[0]):
+        return ""
+    options = {word.partition("=")[0] for word in words}
+    alone = "" if options.intersection(OWN) else " (or: --resume)"
+    return f", and the same command goes on from there{alone}"
 
 
 def goes_on(name: str) -> bool:

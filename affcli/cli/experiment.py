@@ -82,14 +82,14 @@ def experiment(
         ),
     ] = None,
     keep: Annotated[
-        Keep,
+        Keep | None,
         typer.Option(
             "--keep",
-            help="all; rows: no behaviors; trials: only how runs and trials ended.",
+            help="all, the usual; rows: no behaviors; trials: only how runs and trials ended.",
             metavar="WHAT",
             parser=checked_keep,
         ),
-    ] = "all",  # type: ignore[assignment]  # parsed like any other
+    ] = None,
     workers: Workers = None,
     database: Database = DEFAULT_DATABASE,
     as_json: AsJson = False,
@@ -98,25 +98,27 @@ def experiment(
 
     Conditions are paired robot by robot: what they share is learned once. The result is the same
     for any number of workers. An interrupted experiment goes on when the same command is given
-    again, as does the latest one with --resume alone.
+    again, as does the latest one with --resume alone, but for its --shard.
     """
     count = checked_workers(workers)
     if file is None and (dry_run or not resume):
         raise UsageError("which experiment? give a TOML file, or --resume")
     wanted = None if file is None else lab.definition.experiment_file(file)
     if dry_run and wanted is not None:
-        _say_cost(wanted, count, keep, as_json=as_json)
+        _say_cost(wanted, count, keep or Keep.ALL, as_json=as_json)
         return
     with opened(database, create=wanted is not None, write=True) as store:
         what = wanted or _interrupted(store, database)
-        info = lab.conducting.begin(store, what, now)
+        info = lab.conducting.begin(store, what, now, keep)
         robots = (shard or Shard()).of(what.robots)
         with progress(one_line(what.name), len(robots), "robots") as bar:
             for saved in lab.conducting.run(store, what, info, count, now, say, robots, keep):
                 bar(saved, "")
+        # Meanwhile another process may have asked for more robots.
+        wished = store.experiments.named(what.name).definition["experiment"]["robots"]
         results = _results(store, info)
         there = len(store.sessions.saved_robots(info.conditions[0][1]))
-    of_all = f"{there}" if there == what.robots else f"{there} of {what.robots}"
+    of_all = f"{there}" if there == wished else f"{there} of {wished}"
     say(f"experiment {one_line(what.name)}: {of_all} robots, saved in {one_line(database)}")
     said = (what.name, what.question, there, results)
     show_either(

@@ -5,7 +5,7 @@ import gc
 import sys
 from pathlib import Path
 
-from affcli.cli.commands import goes_on
+from affcli.cli.commands import how_it_goes_on
 from affcli.cli.signals import SignalHandler
 from affcli.cli.terminal import prepare_streams, say
 from affcli.errors import AffcliError, BadInputError, one_line
@@ -44,9 +44,7 @@ def main() -> int:
         # After a signal this may be another exception than ours: sqlite3 forgets what is raised in
         # its callbacks, and SQLAlchemy closes the connection that a signal interrupts.
         if handler.signum is not None:
-            again = ""
-            if goes_on("".join(sys.argv[1:2])):
-                again = ", and the same command goes on from there (or: --resume)"
+            again = how_it_goes_on(sys.argv[1:])
             return _fail(f"stopped; what was saved is kept{again}", 128 + handler.signum)
         if isinstance(error, AffcliError):
             return _fail(str(error), error.exit_code)

@@ -10,6 +10,7 @@ from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database, check_count, 
 from affcli.cli.table_choice import Tool
 from affcli.cli.terminal import asked, interactive, say, show_either
 from affcli.core.names import one_of
+from affcli.core.specs import EXPERIMENT, REPRODUCE
 from affcli.errors import UsageError, one_line
 from affcli.report.learning import summary
 from affcli.report.runs import (
@@ -20,6 +21,8 @@ from affcli.report.runs import (
     runs_table,
 )
 
+MANY = {REPRODUCE: "reproductions", EXPERIMENT: "experiments"}
+"""Of what robots' runs are, by the kind of their session."""
 RunId = Annotated[
     int, typer.Argument(help="Its id in the database.", metavar="ID", parser=check_count("run"))
 ]
@@ -29,7 +32,7 @@ def list_runs(
     *,
     tool: Tool = None,
     all_runs: Annotated[
-        bool, typer.Option("--all-runs", help="The robots of reproductions too.")
+        bool, typer.Option("--all-runs", help="The robots of reproductions and experiments too.")
     ] = False,
     database: Database = DEFAULT_DATABASE,
     as_json: AsJson = False,
@@ -42,6 +45,7 @@ def list_runs(
     with opened(database) as store:
         every = lab.table.every_run(store)
         uses = store.runs.uses()
+        kinds = {session.id: session.spec.kind for session in store.sessions.all()}
     if tool is not None:
         one_of(
             "tool", tool, dict.fromkeys([*registry.parts("tools"), *(r.spec.tool for r in every)])
@@ -57,7 +61,9 @@ def list_runs(
     if not runs:
         say("no runs")
     if len(shown) > len(runs):
-        say(f"and {len(shown) - len(runs)} of robots of reproductions: --all-runs")
+        hidden = [kinds[run.session_id] for run in shown if run.session_id is not None]
+        many = " and ".join(MANY[kind] for kind in MANY if kind in hidden)
+        say(f"and {len(hidden)} of robots of {many}: --all-runs")
 
 
 def show_run(

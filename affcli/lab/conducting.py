@@ -6,6 +6,7 @@ who is missing.
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -25,14 +26,24 @@ FAIL_AT_ONCE = 3
 """When so many robots at the beginning fail, and none lives, all of them would."""
 
 
-def begin(store: Store, experiment: Experiment, now: Callable[[], str]) -> ExperimentInfo:
+def begin(
+    store: Store, experiment: Experiment, now: Callable[[], str], keep: Keep | None = None
+) -> ExperimentInfo:
     """Return the stored experiment, new or as far as it came.
 
-    Choice: of one that is there the question and the number of robots may change; whoever changes
-    more gives it another name, so that under one name all robots are of one experiment.
+    Choice: of one that has robots the question and the number of robots may change; whoever changes
+    more gives it another name, so that under one name all robots are of one experiment. One without
+    any is replaced.
+
+    Args:
+        store: open for writing.
+        experiment: what is to be done.
+        now: gives the time as ISO text.
+        keep: how much of lives is to be saved; None for as much as of those that are there.
 
     Raises:
-        UsageError: the one of this name in the store is another, or has more robots.
+        UsageError: the one of this name in the store is another, has more robots, or more or less
+            is kept of them.
     """
     conditions = [
         (
@@ -43,21 +54,28 @@ def begin(store: Store, experiment: Experiment, now: Callable[[], str]) -> Exper
         for condition in experiment.conditions
     ]
     name, file = one_line(experiment.name), one_line(store.path)
-    found = store.experiments.find(experiment.name)
-    if found is not None and found.key != experiment.key:
-        raise UsageError(
-            f"experiment {name} is in {file} already, but {_changes(found, experiment)}; give "
-            "this one another name, or another --db"
+    with store.turn():  # another process may begin one of this name now
+        found = store.experiments.find(experiment.name)
+        saved = store.sessions.saved_robots(found.conditions[0][1]) if found is not None else ()
+        if found is not None and saved and found.key != experiment.key:
+            raise UsageError(
+                f"experiment {name} is in {file} already, but {_changes(found, experiment)}; give "
+                "this one another name, or another --db"
+            )
+        if max(saved, default=0) >= experiment.robots:
+            raise UsageError(
+                f"experiment {name}: {len(saved)} robots are in {file} already; write robots = "
+                f"{max(saved) + 1} or more"
+            )
+        kept = None if found is None else store.experiments.kept(found.id)
+        if None not in (keep, kept) and keep != kept:
+            raise UsageError(
+                f"experiment {name} is in {file} already, with --keep {kept}, not {keep}; give the "
+                "same, or another --db"
+            )
+        return store.experiments.begin(
+            experiment.name, experiment.key, experiment.definition, conditions, now()
         )
-    saved = store.sessions.saved_robots(found.conditions[0][1]) if found is not None else ()
-    if max(saved, default=0) >= experiment.robots:
-        raise UsageError(
-            f"experiment {name}: {len(saved)} robots are in {file} already; write robots = "
-            f"{max(saved) + 1} or more"
-        )
-    return store.experiments.begin(
-        experiment.name, experiment.key, experiment.definition, conditions, now()
-    )
 
 
 def conduct(
@@ -98,16 +116,18 @@ def conduct(
     saved = len(robots) - len(missing)
     yield saved
     failed: dict[int, Exception] = {}
-    lives = in_order(partial(_packed_life, experiment, keep), missing, workers, warn)
-    for robot, life in zip(missing, lives, strict=True):
-        if isinstance(life, Failed):
-            failed[robot] = life.error
-            if list(failed) == missing[:FAIL_AT_ONCE]:
-                break
-        else:
-            store.sessions.save_robot(made_with, life, now())
-            saved += 1
-            yield saved
+    work = partial(_packed_life, experiment, keep)
+    # Whatever ends this, no worker lives on.
+    with closing(in_order(work, missing, workers, warn)) as lives:
+        for robot, life in zip(missing, lives, strict=True):
+            if isinstance(life, Failed):
+                failed[robot] = life.error
+                if list(failed) == missing[:FAIL_AT_ONCE]:
+                    break
+            else:
+                store.sessions.save_robot(made_with, life, now())
+                saved += 1
+                yield saved
     if failed:
         _raise(failed)
 
@@ -133,17 +153,18 @@ def run(
     now: Callable[[], str],
     warn: Callable[[str], object] = str,
     robots: Sequence[int] | None = None,
-    keep: Keep = Keep.ALL,
+    keep: Keep | None = None,
 ) -> Iterator[int]:
     """Let robots of an experiment live, all or some, as `conduct` does.
 
-    It is done when all of them are in the store, whoever brought them there.
+    It is done when all that it is to have are in the store, whoever brought them there. As much is
+    kept of them as `begin` was told, or else as of those that are there.
     """
+    kept = keep or store.experiments.kept(info.id) or Keep.ALL
     sessions = [session for _, session in info.conditions]
     chosen = range(experiment.robots) if robots is None else robots
-    yield from conduct(store, experiment, sessions, chosen, workers, now, warn, keep)
-    if len(store.sessions.saved_robots(sessions[0])) == experiment.robots:
-        store.experiments.finish(info.id, now())
+    yield from conduct(store, experiment, sessions, chosen, workers, now, warn, kept)
+    store.experiments.finish(info.id, now())
 
 
 @dataclass(frozen=True, slots=True)

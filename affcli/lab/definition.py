@@ -5,7 +5,7 @@ base but for what it says, and ``[sweep]`` holds lists of values: every point of
 condition. What the store keeps is such a file too, with base and sweep written out everywhere.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import combinations, product
 from math import prod
@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from affcli import registry
+from affcli.bounded import LARGEST_VALUE
 from affcli.config import (
     SECTIONS,
     SENSOR,
@@ -21,7 +22,7 @@ from affcli.config import (
     settings_by_name,
     toml_file,
 )
-from affcli.core.identity import key_of, shown
+from affcli.core.identity import canonical_json, key_of, shown
 from affcli.core.limits import LARGEST_SEED, LONGEST_HOURS, MOST_ROBOTS
 from affcli.core.names import one_of
 from affcli.core.part import Kind
@@ -54,7 +55,9 @@ USUAL: Mapping[str, Any] = {
     "tasks": [ADAPTATION_TASKS, ADAPTATION],
 }
 """What a condition is when nothing is said: the paper's."""
-MOST_CONDITIONS = 1_000
+MOST_CONDITIONS = 250
+LARGEST_DEFINITION = LARGEST_VALUE - 20_000
+"""Bytes of what a file says when it is written out, so that its row has room in a database."""
 LONGEST_NAME, LONGEST_QUESTION = 80, 1_000
 
 Said = dict[str, Any]
@@ -99,6 +102,11 @@ def experiment_of(tables: Mapping[str, Any], source: str) -> Experiment:
                 for key in point.keys() & said.keys():
                     raise BadInputError(f"{key} is said here and in the sweep; say it once")
                 title = ", ".join(filter(None, (own, label))) or "base"
+                if len(title) > LONGEST_NAME:
+                    raise BadInputError(
+                        f"the name {one_line(title, 200)} has more than {LONGEST_NAME} letters; "
+                        "give the condition a shorter one, or sweep fewer things at once"
+                    )
                 condition, form = _condition(title, shared | said | point)
                 _require_new(condition, there)
             conditions.append(condition)
@@ -107,6 +115,11 @@ def experiment_of(tables: Mapping[str, Any], source: str) -> Experiment:
         "experiment": {"name": name, "question": question, "robots": robots, "seed": seed},
         "condition": forms,
     }
+    if len(canonical_json(definition).encode()) > LARGEST_DEFINITION:
+        raise BadInputError(
+            f"{source}: its {len(forms)} conditions, written out, are more than "
+            f"{LARGEST_DEFINITION} bytes; make several experiments of them"
+        )
     return Experiment(name, question, robots, seed, tuple(conditions), definition)
 
 
@@ -143,16 +156,15 @@ def _whole(value: object, key: str, low: int, high: int) -> int:
     return value
 
 
-def _hours(value: object, factor: float) -> float:
-    """Return robot hours, given in hours or in minutes."""
+def _hours(value: object, of_an_hour: float) -> float:
+    """Return robot hours, given in hours or in minutes: how many of them are an hour."""
+    most = LONGEST_HOURS * of_an_hour
     number = isinstance(value, int | float) and not isinstance(value, bool)
-    hours = float(value) * factor if number else 0.0  # type: ignore[arg-type]
-    if not 0.0 < hours <= LONGEST_HOURS:
+    if not (number and 0.0 < value <= most):  # type: ignore[operator]
         raise BadInputError(
-            f"{one_line(value, 40)} must be a number of more than 0 and at most "
-            f"{LONGEST_HOURS / factor:g}"
+            f"{one_line(value, 40)} must be a number of more than 0 and at most {most:g}"
         )
-    return hours
+    return value / of_an_hour  # type: ignore[operator]
 
 
 def _named_conditions(tables: object, source: str) -> list[tuple[str, str, Said]]:
@@ -171,7 +183,10 @@ def _named_conditions(tables: object, source: str) -> list[tuple[str, str, Said]
 
 def _grid(table: Mapping[str, Any], place: str, most: int) -> list[tuple[str, Said]]:
     """Return the name and what is said of each point of a grid; one of no name without a sweep."""
-    axes = dict(_by_name(table, place))
+    axes: dict[str, Any] = {}
+    for key, values in _by_name(table, place):
+        _require_unsaid(key, map(_one_key, axes), place)
+        axes[key] = values
     short = [key.rpartition(".")[2] for key in axes]
     for key, values in axes.items():
         if not isinstance(values, list) or not values:
@@ -217,19 +232,29 @@ def _by_name(table: Mapping[str, Any], place: str) -> Iterator[tuple[str, Any]]:
             yield key, value
 
 
+def _one_key(given: str) -> str:
+    """Return the one key of what may be said by several."""
+    return {"minutes": "hours", "sensor": SENSOR}.get(given, given)
+
+
+def _require_unsaid(given: str, said: Iterable[str], place: str) -> None:
+    """Refuse a key whose thing is said already."""
+    if (key := _one_key(given)) in said:
+        raise BadInputError(f"{place}.{given}: {key} is said twice")
+
+
 def _said(table: Mapping[str, Any], place: str) -> Said:
     """Return what a table says, each value checked by itself."""
     said: Said = {}
     for given, value in _by_name(table, place):
-        key = {"minutes": "hours", "sensor": SENSOR}.get(given, given)
-        if key in said:
-            raise BadInputError(f"{place}.{given}: {key} is said twice")
+        key = _one_key(given)
+        _require_unsaid(given, said, place)
         if "." in key:
             said |= checked_by_name({key: value}, place)
             continue
         with _at(f"{place}.{given}"):
             if key == "hours":
-                said[key] = _hours(value, 1.0 if given == "hours" else 1.0 / 60.0)
+                said[key] = _hours(value, 1.0 if given == "hours" else 60.0)
             else:
                 said[key] = _parts(key, value)
     return said

@@ -1,6 +1,6 @@
 """What a database holds, read for the reports."""
 
-from affcli.analysis.overview import Breaking, Overview, breaking_of, goal_counts
+from affcli.analysis.overview import Breaking, ExperimentRuns, Overview, breaking_of, goal_counts
 from affcli.analysis.reproduction import Reproduction, failures_in
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import Protocol
@@ -49,7 +49,18 @@ def overview_of(store: Store) -> Overview:
             if session.status == "done"
         ],
         failed.invalid,
+        experiments_of(store),
     )
+
+
+def experiments_of(store: Store) -> list[ExperimentRuns]:
+    """Return the experiments that have robots, oldest first."""
+    learned = store.experiments.learned()
+    return [
+        ExperimentRuns(one.name, len(one.conditions), learned[one.name])
+        for one in store.experiments.all()
+        if one.name in learned
+    ]
 
 
 def _is_twin(store: Store, run: LearningRunInfo) -> bool:

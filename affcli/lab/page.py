@@ -11,11 +11,11 @@ from affcli.core.specs import Counters
 from affcli.core.trial import is_counted
 from affcli.errors import AffcliError, UsageError, one_line
 from affcli.lab.learning_curves import curves_of, curves_of_robots
-from affcli.lab.overview import reproduction_of
+from affcli.lab.overview import experiments_of, reproduction_of
 from affcli.lab.predicting import predict, prediction_spec
 from affcli.lab.replaying import replay_trial
 from affcli.report.page.content import Broken, Content, LearnedRows
-from affcli.report.words import in_order
+from affcli.report.words import experiment_words, in_order
 from affcli.store import Store
 
 MOST_ROBOTS = 5
@@ -164,6 +164,9 @@ def _of_reproduction(store: Store, robots: Sequence[int], result: Reproduction |
                 f"nothing learned in {where} yet: run {', '.join(begun)} is not finished; go on "
                 "with the command that began it"
             )
+        if experiments := experiments_of(store):
+            words = "; ".join(map(experiment_words, experiments))
+            raise UsageError(f"no learning run or reproduction for a page in {where}; {words}")
         raise UsageError(f"nothing learned in {where}; first run: affcli learn --tool t-hook")
     of = result.session
     runs: dict[int, list[LearningRunInfo]] = {}

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import traceback
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -84,7 +84,7 @@ def working(
 
 def in_order(
     work: Callable[[T], R], tasks: Sequence[T], workers: int, warn: Callable[[str], object]
-) -> Iterator[R | Failed]:
+) -> Generator[R | Failed, None, None]:
     """Yield what `work` gives for each task, as `working` does, once."""
     with working(work, min(workers, len(tasks)), warn) as answers:
         yield from answers(tasks)

@@ -13,6 +13,7 @@ from affcli.report.learning import groups_json, groups_table, learned_table, run
 from affcli.report.reproduction import failures_table, reproduction_json, reproduction_tables
 from affcli.report.sheet import Sheet
 from affcli.report.trials import counts_tables
+from affcli.report.words import experiment_words
 
 
 def overview_tables(overview: Overview) -> list[RenderableType]:
@@ -29,6 +30,7 @@ def overview_tables(overview: Overview) -> list[RenderableType]:
         shown.append(failures_table(overview.failures, overview.trials, overview.invalid))
     for reproduction in overview.reproductions:
         shown += reproduction_tables(reproduction)
+    shown += [Text(experiment_words(one)) for one in overview.experiments]
     if not shown:
         shown.append(Text("nothing learned yet; first run: affcli learn --tool t-hook"))
     return shown
@@ -100,4 +102,5 @@ def overview_json(overview: Overview) -> dict[str, Any]:
         "trials": overview.trials,
         "invalid": overview.invalid,
         "reproductions": [reproduction_json(again) for again in overview.reproductions],
+        "experiments": [one._asdict() for one in overview.experiments],
     }

@@ -1,8 +1,10 @@
 """Words and numbers as all reports write them."""
 
 import json
+import shlex
 from collections.abc import Iterable
 
+from affcli.analysis.overview import ExperimentRuns
 from affcli.analysis.paper import PLANNER, other_parts
 from affcli.analysis.statistics import ENOUGH_ROBOTS, FEWEST
 from affcli.core.behavior import BehaviorCall
@@ -154,3 +156,11 @@ def unknown_shapes(tools: Iterable[Tool]) -> str:
 def in_order(names: Iterable[str]) -> list[str]:
     """Return names of goals or starts once each: numbers by value, then words."""
     return sorted(set(names), key=lambda name: (not name.isdecimal(), len(name), name))
+
+
+def experiment_words(one: ExperimentRuns) -> str:
+    """Return how much an experiment is, and the command that shows what came of it."""
+    name = one_line(one.experiment)
+    command = f"compare {shlex.quote(name)}" if one.conditions > 1 else "runs list --all-runs"
+    runs = many(one.learning_runs, "learning run")
+    return f"{runs} of robots of the experiment {name}: affcli {command}"

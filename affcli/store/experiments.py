@@ -9,11 +9,11 @@ import sqlalchemy as sa
 from affcli.core.identity import canonical_json
 from affcli.core.names import one_of
 from affcli.core.records import ExperimentInfo
-from affcli.core.specs import SessionSpec
+from affcli.core.specs import Keep, SessionSpec
 from affcli.errors import UsageError, one_line
 from affcli.store import reading, rows
-from affcli.store.connection import Database, insert_one, mappings
-from affcli.store.tables import experiment, session
+from affcli.store.connection import Database, insert_one, mappings, tuples
+from affcli.store.tables import experiment, learning_run, session, trial
 
 Conditions = Sequence[tuple[str, SessionSpec, Mapping[str, str]]]
 """The name, the session and the versions of each condition, in order."""
@@ -30,8 +30,8 @@ class Experiments:
     ) -> ExperimentInfo:
         """Return the experiment of a name, new or as far as it came.
 
-        Of one that is there only what is not part of its key is taken over: the question, and how
-        many robots there are to be.
+        Of one of the same key that is there the question and how many robots there are to be are
+        taken over. One of another key is replaced: none of its robots may be saved.
 
         Args:
             name: of the experiment.
@@ -39,14 +39,14 @@ class Experiments:
             definition: as JSON types; kept with it.
             conditions: in order.
             now: ISO text, UTC.
-
-        Returns:
-            The stored one, which may have another key: then nothing was written.
         """
         versions = {package: one for _, _, own in conditions for package, one in own.items()}
         with self.database.writing() as connection:
             found = self.find(name)
-            if found is not None and (found.key != key or found.definition == definition):
+            if found is not None and found.key != key:
+                self._remove(connection, found)
+                found = None
+            if found is not None and found.definition == definition:
                 return found
             row = {
                 "name": name,
@@ -91,6 +91,11 @@ class Experiments:
                 .values(robots=spec.robots, key=spec.key, **again)
             )
 
+    def _remove(self, connection: sa.Connection, found: ExperimentInfo) -> None:
+        """Delete an experiment without robots; the database refuses to delete one that has some."""
+        connection.execute(sa.delete(session).filter_by(experiment_id=found.id))
+        connection.execute(sa.delete(experiment).filter_by(id=found.id))
+
     def find(self, name: str) -> ExperimentInfo | None:
         """Return the experiment of a name, None when there is none."""
         return next((one for one in self.all() if one.name == name), None)
@@ -113,20 +118,60 @@ class Experiments:
             )
 
     def finish(self, experiment_id: int, now: str) -> None:
-        """Mark an experiment and its sessions as done; what was done before stays as it is."""
+        """Mark an experiment and its sessions as done if all its robots are there; see `settle`."""
         with self.database.writing() as connection:
-            for table, condition in (
-                (experiment, experiment.c.id == experiment_id),
-                (session, session.c.experiment_id == experiment_id),
-            ):
-                connection.execute(
-                    sa.update(table)
-                    .where(condition, table.c.status == "running")
-                    .values(status="done", finished_at=now)
+            settle(connection, sessions_of(connection, experiment_id), now)
+
+    def kept(self, experiment_id: int) -> Keep | None:
+        """Return how much of its first robot's life was kept; None when it has no robot yet."""
+        of_it = sa.select(session.c.id).filter_by(experiment_id=experiment_id)
+        c = learning_run.c
+        wanted = sa.select(c.kept).where(c.session_id.in_(of_it)).order_by(c.id).limit(1)
+        with self.database.reading() as connection:
+            found = connection.scalar(wanted)
+        with reading.reading_what_was_written(f"experiment {experiment_id}"):
+            return None if found is None else Keep(found)
+
+    def learned(self) -> dict[str, int]:
+        """Return how many learning runs the robots of each experiment made, oldest first."""
+        runs = (
+            sa.select(experiment.c.name, sa.func.count(learning_run.c.id))
+            .select_from(
+                experiment.join(session, session.c.experiment_id == experiment.c.id).join(
+                    learning_run, learning_run.c.session_id == session.c.id
                 )
+            )
+            .group_by(experiment.c.id)
+            .order_by(experiment.c.id)
+        )
+        with self.database.reading() as connection:
+            return dict(tuples(connection, runs))
 
 
 def sessions_of(connection: sa.Connection, number: int) -> list[dict[str, Any]]:
     """Return the sessions of an experiment, in the order of its conditions."""
     wanted = sa.select(session).filter_by(experiment_id=number).order_by(session.c.id)
     return mappings(connection, wanted)
+
+
+def settle(connection: sa.Connection, sessions: Sequence[Mapping[str, Any]], now: str) -> None:
+    """Mark as done what has all its robots, and as running what has not.
+
+    Args:
+        connection: in a transaction, in which the robots are counted, too.
+        sessions: the rows of all sessions of an experiment, or of a reproduction.
+        now: ISO text, UTC.
+    """
+    robots = sa.select(sa.func.count(trial.c.robot.distinct()))
+    count = connection.scalar(robots.where(trial.c.session_id == sessions[0]["id"]))
+    state = (
+        {"status": "done", "finished_at": now}
+        if count == sessions[0]["robots"]
+        else {"status": "running", "finished_at": None}
+    )
+    for table, which in (
+        (session, session.c.id.in_([one["id"] for one in sessions])),
+        (experiment, experiment.c.id == sessions[0]["experiment_id"]),
+    ):
+        other = table.c.status != state["status"]
+        connection.execute(sa.update(table).where(which, other).values(state))

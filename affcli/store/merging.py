@@ -12,7 +12,7 @@ from affcli.core.specs import REPRODUCE
 from affcli.errors import DatabaseError, UsageError, one_line
 from affcli.store.columns import COLUMNS
 from affcli.store.connection import insert_many, insert_one, mappings, tuples
-from affcli.store.experiments import sessions_of
+from affcli.store.experiments import sessions_of, settle
 from affcli.store.opening import open_store
 from affcli.store.tables import (
     affordance,
@@ -239,7 +239,8 @@ class _Merging:
             new += self._bring(many, life)
             progress(number, len(lives))
         for many in self._many.values():
-            self._finish(many)
+            wanted = sa.select(session).where(session.c.id.in_(many.sessions))
+            settle(self._connection, mappings(self._connection, wanted), self._now)
         left_out = {what: count for what, count in self._left_out.items() if count}
         return Merged(new, len(lives) - new, left_out)
 
@@ -310,26 +311,6 @@ class _Merging:
         }
         theirs = tuples(life.connection, wanted.where(key[0].in_(runs)))
         return {row: ours[runs[run], number] for row, run, number in theirs}
-
-    def _finish(self, many: _Many) -> None:
-        """Mark as done what has all its robots, and as running what has not."""
-        wanted = sa.select(session).where(session.c.id.in_(many.sessions))
-        sessions = mappings(self._connection, wanted)
-        robots = sa.select(sa.func.count(trial.c.robot.distinct()))
-        count = self._connection.scalar(robots.where(trial.c.session_id == many.sessions[0]))
-        done = count == sessions[0]["robots"]
-        state = (
-            {"status": "done", "finished_at": self._now}
-            if done
-            else {"status": "running", "finished_at": None}
-        )
-        number = sessions[0]["experiment_id"]
-        for table, which in (
-            (session, session.c.id.in_(many.sessions)),
-            (experiment, experiment.c.id == number),
-        ):
-            other = table.c.status != state["status"]
-            self._connection.execute(sa.update(table).where(which, other).values(state))
 
 
 def _without(row: Row, name: str) -> Row:

@@ -33,6 +33,8 @@ from affcli.store.tables import (
 
 COUNTED = [outcome.value for outcome in Outcome if is_counted(outcome)]
 """How trials end that count."""
+ROBOTS_IN_A_LIST = 1_000
+"""So many numbers are one value of a row, far from what a value may have (affcli.bounded)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,17 +116,25 @@ class Results:
             .subquery()
         )
         columns = [robots.c[name] for name in names]
-        # A row a cell, its robots in lists: a row a robot and cell would take three times as long.
+        # Robots in lists: a row a robot and cell would take three times as long.
         lists = [sa.func.group_concat(robots.c[n]) for n in ("robot", "trials", "solved")]
+        block = robots.c.robot / sa.literal_column(str(ROBOTS_IN_A_LIST))
         wanted = (
-            sa.select(*columns, *lists).group_by(*columns).order_by(sa.func.min(robots.c.first))
+            sa.select(sa.func.min(robots.c.first), *lists, *columns)
+            .group_by(sa.cast(block, sa.Integer), *columns)
+            .order_by(sa.func.min(robots.c.robot))
         )
         cells: dict[Cell, dict[int, tuple[int, int]]] = {}
-        for row in self._all(wanted):
-            cell = Cell(**dict(zip(names, row, strict=False)))
-            numbers, trials, solved = (map(int, text.split(",")) for text in row[len(names) :])
-            cells[cell] = dict(zip(numbers, zip(trials, solved, strict=True), strict=True))
-        return cells
+        firsts: dict[Cell, int] = {}
+        for first, *texts, row in (
+            (*one[: 1 + len(lists)], one[1 + len(lists) :]) for one in self._all(wanted)
+        ):
+            cell = Cell(**dict(zip(names, row, strict=True)))
+            numbers, trials, solved = (map(int, text.split(",")) for text in texts)
+            own = dict(zip(numbers, zip(trials, solved, strict=True), strict=True))
+            cells.setdefault(cell, {}).update(own)
+            firsts[cell] = min(first, firsts.get(cell, first))
+        return {cell: cells[cell] for cell in sorted(cells, key=firsts.__getitem__)}
 
     def outcome_counts(self, session_ids: Iterable[int]) -> dict[Outcome, int]:
         """Return how the trials of some sessions ended, counted by kind of end."""

@@ -5,11 +5,12 @@ from dataclasses import dataclass
 import sqlalchemy as sa
 
 from affcli.core.records import Belongings
-from affcli.errors import UsageError
+from affcli.errors import UsageError, one_line
 from affcli.store.connection import Database, numbered, tuples
 from affcli.store.tables import (
     affordance,
     behavior,
+    experiment,
     learning_run,
     replication,
     session,
@@ -75,15 +76,16 @@ class Runs:
             What was deleted with it.
 
         Raises:
-            UsageError: there is no such run, or it is a part of a reproduction, of whose robots
-                none may be missing.
+            UsageError: there is no such run, or it is a part of a reproduction or an experiment, of
+                whose robots none may be missing.
         """
         with self.database.writing() as connection:
             part_of = _require(connection, run_id)
             if part_of is not None:
+                which = _session_words(connection, part_of)
                 raise UsageError(
-                    f"run {run_id} is part of reproduction {part_of}, which is kept whole; "
-                    "a reproduction that is not wanted any more goes with its file"
+                    f"run {run_id} is part of {which}, which is kept whole; one that is not wanted "
+                    "any more goes with its file"
                 )
             used = sa.select(trial.c.session_id).where(trial.c.learning_run_id == run_id)
             sessions = set(connection.scalars(used.distinct()))
@@ -132,7 +134,16 @@ def _count(
 
 
 def _require(connection: sa.Connection, run_id: int) -> int | None:
-    """Return which reproduction a run is part of; UsageError when there is no such run."""
+    """Return the session that a run is part of; UsageError when there is no such run."""
     wanted = sa.select(learning_run.c.session_id)
     part_of = numbered(connection, wanted, learning_run, "learning run", run_id)["session_id"]
     return None if part_of is None else int(part_of)
+
+
+def _session_words(connection: sa.Connection, number: int) -> str:
+    """Return of what a session is, which has runs of its own: a reproduction, or an experiment."""
+    names = sa.select(experiment.c.name).where(
+        experiment.c.id == session.c.experiment_id, session.c.id == number
+    )
+    name = connection.scalar(names)
+    return f"reproduction {number}" if name is None else f"experiment {one_line(name)}"

@@ -8,7 +8,7 @@ from importlib import import_module
 import pytest
 
 from affcli.cli.app import program
-from affcli.cli.commands import SECTIONS, Command, Group, goes_on
+from affcli.cli.commands import SECTIONS, Command, Group, goes_on, how_it_goes_on
 from tests.cli.program import affcli, done
 from tests.readmes import table_rows, words_of
 
@@ -105,3 +105,15 @@ def test_the_commands_that_go_on_when_given_again() -> None:
     ]
     assert not goes_on("")
     assert not goes_on("figure")
+
+
+def test_resume_alone_is_offered_only_where_it_does_the_same() -> None:
+    same = ", and the same command goes on from there"
+    for words, told in (
+        (["experiment", "a.toml"], f"{same} (or: --resume)"),
+        (["experiment", "a.toml", "--shard", "1/2"], same),
+        (["experiment", "--keep=rows", "a.toml"], same),
+        (["figure", "curve"], ""),
+        ([], ""),
+    ):
+        assert how_it_goes_on(words) == told

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from affcli.cli import terminal
+from affcli.core.specs import Keep
 from affcli.lab.conducting import begin, run
 from affcli.lab.definition import experiment_file
 from affcli.store import open_store
@@ -131,6 +132,35 @@ def test_resume_alone_goes_on_with_the_latest(file: Path, lived: Path, tmp_path:
     assert ended.out.startswith("two: solved, mean of 2 robots\n")
     assert contents(path) == contents(lived)
     assert "nothing to resume" in refused(2, "experiment", "--resume", "--db", path)
+
+
+def test_resume_alone_keeps_as_much_of_lives_as_before(file: Path, tmp_path: Path) -> None:
+    path = tmp_path / "half.db"
+    what = experiment_file(file)
+    with open_store(path, create=True, write=True) as store:
+        info = begin(store, what, now, Keep.TRIALS)
+        taken(run(store, what, info, 1, now, keep=Keep.TRIALS), 2)
+    line = refused(2, "experiment", file, "--keep", "all", "--db", path)
+    assert "experiment two is in" in line
+    assert line.endswith("with --keep trials, not all; give the same, or another --db")
+    done("experiment", "--resume", "--workers", "1", "--db", path)
+    assert rows(path, "SELECT DISTINCT kept FROM learning_run") == [("trials",)]
+    assert rows(path, "SELECT count(DISTINCT robot) FROM trial") == [(2,)]
+
+
+def test_other_commands_name_the_experiment(lived: Path, tmp_path: Path) -> None:
+    words = "4 learning runs of robots of the experiment two: affcli compare two"
+    assert done("report", "--db", lived).out == f"{words}\n"
+    assert done("report", "--json", "--db", lived).result["experiments"] == [
+        {"experiment": "two", "conditions": 2, "learning_runs": 4}
+    ]
+    page = tmp_path / "page.html"
+    line = refused(2, "report", "--html", page, "--db", lived)
+    assert line == f"affcli: no learning run or reproduction for a page in {lived}; {words}"
+    listed = done("runs", "list", "--db", lived).err
+    assert listed.splitlines() == ["no runs", "and 4 of robots of experiments: --all-runs"]
+    line = refused(2, "runs", "delete", "3", "--yes", "--db", lived)
+    assert "run 3 is part of experiment two, which is kept whole; one that is not wanted" in line
 
 
 def test_what_is_wrong_is_one_line(file: Path, tmp_path: Path) -> None:

@@ -23,6 +23,7 @@ def test_an_empty_database_names_the_first_command(empty: Path) -> None:
         "trials": 0,
         "invalid": 0,
         "reproductions": [],
+        "experiments": [],
     }
 
 

@@ -84,7 +84,7 @@ def test_robots_of_a_reproduction_are_listed_when_asked_for_and_kept_whole(
 ) -> None:
     ended = done("runs", "list", "--db", reproduced)
     assert (ended.out, ended.err.splitlines()[0]) == ("", "no runs")
-    assert "10 of robots of reproductions" in ended.err
+    assert "and 10 of robots of reproductions: --all-runs" in ended.err
     shown = done("runs", "list", "--all-runs", "--json", "--db", reproduced).results
     assert [run["run"] for run in shown] == list(range(1, 11))
     before = reproduced.read_bytes()

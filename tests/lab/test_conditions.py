@@ -8,6 +8,7 @@ from affcli.errors import UsageError
 from affcli.lab.conditions import compared, counts_of, planned, sessions_named
 from affcli.lab.courses import curves_of
 from affcli.store import Store
+from affcli.store.columns import COLUMNS
 from affcli.store.tables import trial
 from tests.store.conditions import SECOND, stored_conditions
 from tests.store.records import begun
@@ -31,6 +32,25 @@ def test_what_each_robot_solved_of_each_cell(store: Store) -> None:
         ALL,
         Cell(ADAPTATION, TASKS),
     ]
+
+
+def test_robots_of_any_number_are_counted(store: Store) -> None:
+    """SQLite gives no value of more than some bytes here: not the numbers of all robots."""
+    first, _ = stored_conditions(store, robots=2, conditions=2)
+    before = store.results.solved_by_cell(first, ["tool"])
+    names = ", ".join(name for name in COLUMNS["trial"] if name not in ("id", "robot"))
+    with store.database.writing() as connection:
+        connection.exec_driver_sql(
+            "WITH RECURSIVE n(robot) AS (SELECT 2 UNION ALL SELECT robot + 1 FROM n "
+            f"WHERE robot < 24999) INSERT INTO trial (robot, {names}) SELECT n.robot, {names} "
+            f"FROM n, trial WHERE trial.robot = 1 AND session_id = {first}"
+        )
+    cells = store.results.solved_by_cell(first, ["tool"])
+    assert list(cells) == list(before)
+    for cell, counts in cells.items():
+        assert list(counts) == list(range(25_000))
+        assert counts[0] == before[cell][0]
+        assert {counts[robot] for robot in range(1, 25_000)} == {before[cell][1]}
 
 
 def test_robots_are_compared_with_the_first_condition_or_with_one_that_is_named(

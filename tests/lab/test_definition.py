@@ -8,11 +8,13 @@ import pytest
 
 from affcli.core.identity import Component
 from affcli.errors import BadInputError
-from affcli.lab.definition import experiment_file, experiment_of
+from affcli.lab.conducting import begin
+from affcli.lab.definition import MOST_CONDITIONS, experiment_file, experiment_of
 from affcli.lab.experiment import Experiment
 from affcli.lab.run_parts import RunParts, settings_of
 from affcli.simulation.tools.paper import TOOL_PARTS
-from tests.lab.quick import IMPATIENT
+from affcli.store import Store
+from tests.lab.quick import IMPATIENT, now
 
 HEAD = '[experiment]\nname = "try"\nrobots = 3\n'
 TWO = '[[condition]]\nname = "a"\n[[condition]]\nname = "b"\n'
@@ -126,6 +128,23 @@ def test_the_key_is_of_what_robots_are_functions_of(read: Any) -> None:
         assert read(f"{HEAD}{more}\n").key != key
 
 
+def test_as_many_hours_in_minutes_are_the_same(read: Any) -> None:
+    keys = {read(f"{HEAD}[base]\n{said}\n").key for said in ("minutes = 207", "hours = 3.45")}
+    assert len(keys) == 1
+
+
+def test_as_many_conditions_as_there_may_be_can_be_stored(read: Any, store: Store) -> None:
+    sweep = f"[sweep]\nminutes = [{', '.join(str(n + 1) for n in range(MOST_CONDITIONS))}]\n"
+    info = begin(store, read(f"{HEAD}question = '{'ä' * 1000}'\n{sweep}"), now)
+    assert len(store.experiments.named("try").conditions) == MOST_CONDITIONS
+    again = experiment_of(info.definition, "a database")
+    assert (len(again.conditions), begin(store, again, now)) == (MOST_CONDITIONS, info)
+    more = 'planner = "nested-query:share=0.05"\nsensor.color_noise = 0.011\n'
+    more += "puck.mass = 0.21\nmotion.push_speed = 3.5\nmotion.hold = 1.5\ntrial.max_steps = 9\n"
+    with pytest.raises(BadInputError, match=r"its 250 conditions, written out, are more than"):
+        read(f"{HEAD}[base]\n{more}{sweep}")
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -150,6 +169,7 @@ def test_the_key_is_of_what_robots_are_functions_of(read: Any) -> None:
         (f"{HEAD}[base]\ntools = ['stick', 'stick']\n", "base.tools: stick comes twice"),
         (f"{HEAD}[base]\nexplorer = 'random:x=1'\n", "base.explorer: random: no parameter x"),
         (f"{HEAD}[base]\nhours = 0\n", "base.hours: 0 must be a number of more than 0 and at most"),
+        (f"{HEAD}[base]\nminutes = 1{'0' * 400}\n", "base.minutes: 1000"),
         (f"{HEAD}[base]\nhours = 'long'\n", "base.hours: long must be a number of more than 0"),
         (f"{HEAD}[base]\nminutes = nan\n", "base.minutes: nan must be a number of more than 0"),
         (f"{HEAD}[base]\nminutes = 6\nhours = 1\n", "base.hours: hours is said twice"),
@@ -182,8 +202,20 @@ def test_the_key_is_of_what_robots_are_functions_of(read: Any) -> None:
         (f"{HEAD}[sweep]\nplanner = 'nested-query'\n", "sweep.planner: must be a list of values"),
         (f"{HEAD}[sweep]\nplanner = ['x']\n", "sweep[0].planner: no planner 'x'"),
         (
-            f"{HEAD}[sweep]\nminutes = [{','.join('1' * 1001)}]\n",
-            "sweep: more than 1000 conditions",
+            f"{HEAD}[sweep]\nminutes = [{','.join('1' * 251)}]\n",
+            "sweep: more than 250 conditions",
+        ),
+        (
+            f"{HEAD}[sweep]\nminutes = [1, 2]\nhours = [3, 4]\n",
+            "sweep.hours: hours is said twice",
+        ),
+        (
+            f"{HEAD}[sweep]\nsensor = ['noisy']\nsettings.sensor.kind = ['exact']\n",
+            "sweep.sensor.kind: sensor.kind is said twice",
+        ),
+        (
+            f"{HEAD}[[condition]]\nname = '{'a' * 75}'\n[sweep]\nminutes = [1]\n",
+            f"condition[0]: the name {'a' * 75}, minutes=1 has more than 80 letters; give",
         ),
         (
             f"{HEAD}{TWO}hours = 2\n[sweep]\nminutes = [1, 2]\n",
@@ -193,8 +225,8 @@ def test_the_key_is_of_what_robots_are_functions_of(read: Any) -> None:
             f"{HEAD}[base]\ntools.part_width = 5\ntools.hook_length = 4\n",
             "settings: tools.part_width = 5 must be less than tools.hook_length = 4",
         ),
-        ("[experiment\n", "not TOML of settings: "),
-        ("a.b.c.d.e.f = 1\n", "not TOML of settings: more than 4 dots"),
+        ("[experiment\n", "not TOML: "),
+        ("a.b.c.d.e.f = 1\n", "not TOML: more than 4 dots"),
     ],
 )
 def test_all_that_is_wrong_is_found_and_its_place_named(

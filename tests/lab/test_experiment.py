@@ -10,7 +10,7 @@ import pytest
 
 from affcli.core.row_filter import RowFilter
 from affcli.core.specs import Keep, Protocol, RobotRecord
-from affcli.errors import SimulationDivergedError, UsageError
+from affcli.errors import DatabaseError, SimulationDivergedError, UsageError
 from affcli.lab import conducting, experiment, reproduction
 from affcli.lab.conducting import begin, estimate, run
 from affcli.lab.definition import experiment_of
@@ -176,12 +176,80 @@ def replace_head(**head: object) -> Experiment:
 def test_another_experiment_of_the_same_name_is_refused(
     store: Store, changed: dict[str, object], says: str
 ) -> None:
-    begin(store, WHAT, now)
+    taken(run(store, WHAT, begin(store, WHAT, now), 1, now), 2)
     before = contents(store)
     with pytest.raises(UsageError, match=r"three is in .* already, but .* another name") as refused:
         begin(store, experiment_of({**TABLES, **changed}, "a test"), now)
     assert says in str(refused.value)
     assert contents(store) == before
+
+
+def test_one_that_has_no_robot_yet_makes_room_for_another_of_its_name(store: Store) -> None:
+    old = begin(store, replace_head(seed=12), now)
+    info = begin(store, WHAT, now)
+    assert (info.key, [one.id for one in store.experiments.all()]) == (WHAT.key, [info.id])
+    sessions = {one.id for one in store.sessions.all()}
+    assert sessions == {number for _, number in info.conditions}
+    assert sessions.isdisjoint(number for _, number in old.conditions)  # no id is given twice
+
+
+def test_of_two_begun_at_once_only_one_has_robots(store: Store) -> None:
+    """What another process begins and saves is seen although it began in the meantime."""
+    other = replace_head(seed=12, robots=1)
+    with open_store(store.path, create=False, write=True, timeout=0.0) as theirs:
+        first = run(theirs, other, begin(theirs, other, now), 1, now)
+        mine = begin(store, WHAT, now)  # the other has no robot yet
+        with pytest.raises(DatabaseError, match="perhaps it was deleted meanwhile"):
+            list(first)
+    taken(run(store, WHAT, mine, 1, now), 2)
+    with pytest.raises(UsageError, match="its seed is 11, not 12"):
+        begin(store, other, now)
+
+    def while_begun() -> str:
+        with open_store(store.path, create=False, write=True, timeout=0.0) as theirs:
+            begin(theirs, replace_head(name="four", seed=1), now)
+        return now()
+
+    with pytest.raises(DatabaseError, match="locked"):  # nobody comes in between
+        begin(store, replace_head(name="four"), while_begun)
+
+
+def test_it_is_done_when_all_that_it_is_to_have_are_there(store: Store) -> None:
+    few = replace_head(robots=1)
+    info = begin(store, few, now)
+    begin(store, WHAT, now)  # another process wants more of it meanwhile
+    assert list(run(store, few, info, 1, now)) == [0, 1]
+    assert store.experiments.named("three").status == "running"
+    assert run_all(store) == [1, 2, 3]
+    assert store.experiments.named("three").status == "done"
+
+
+def test_as_much_is_kept_of_all_robots(store: Store) -> None:
+    few = replace_head(robots=1)
+    list(run(store, few, begin(store, few, now, Keep.ROWS), 1, now, keep=Keep.ROWS))
+    with pytest.raises(UsageError, match="with --keep rows, not trials; give the same, or another"):
+        begin(store, WHAT, now, Keep.TRIALS)
+    more = replace_head(robots=2)
+    list(run(store, more, begin(store, more, now), 1, now))
+    assert run_sql(store.path, "select distinct kept from learning_run").rows == (("rows",),)
+
+
+def test_no_worker_lives_on_when_saving_fails(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    closed = []
+
+    def lives(*_: object) -> Iterator[None]:
+        try:
+            yield None
+        finally:
+            closed.append(True)
+
+    monkeypatch.setattr(conducting, "in_order", lives)
+    told = run(store, replace_head(robots=1), begin(store, WHAT, now), 1, now)
+    with pytest.raises(AttributeError):  # what it is given is no robot
+        list(told)
+    assert closed == [True]
 
 
 def test_experiments_are_found_by_name(store: Store) -> None:
