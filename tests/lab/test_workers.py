@@ -225,6 +225,7 @@ def test_with_no_worker_left_it_ends(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("rounds_died", [1, 2])
 def test_workers_that_all_die_between_two_rounds_are_replaced(rounds_died: int) -> None:
     told: list[str] = []
+    pids: list[int] = []
     with working(own_process, 2, told.append) as answers:
         for _ in range(rounds_died):
             pids = [pid for pid in answers(range(40)) if isinstance(pid, int)]

@@ -159,8 +159,8 @@ def test_a_robot_that_lacks_a_trial_is_refused(
     with pytest.raises(DatabaseError) as refused:
         merge([paths["source"]], paths["target"], NOW)
     assert str(refused.value) == (
-        f"{paths['source']}: robot 1 of experiment shared is another than in {paths['target']}: its "
-        f"trial with the {shape} at goal {goal} from {start} is not in {paths[lacks]}; was it "
+        f"{paths['source']}: robot 1 of experiment shared is another than in {paths['target']}: "
+        f"its trial with the {shape} at goal {goal} from {start} is not in {paths[lacks]}; was it "
         "deleted?"
     )
     assert contents(paths["target"]) == before
