@@ -41,6 +41,12 @@ class SimulationDivergedError(AffcliError):
     exit_code = 4
 
 
+class WorkersDiedError(AffcliError):
+    """Worker processes died, as they do where there is not enough memory for so many."""
+
+    exit_code = 4
+
+
 def one_line(text: object, limit: int = 200) -> str:
     """Return `text` as one printable line, so that an error can quote what a user wrote."""
     try:

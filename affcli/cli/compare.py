@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 def checked_by(text: str) -> list[str]:
     """Return what trials are told apart by, each once; UsageError for what does not tell."""
-    known = ("tool", "goal", "start", "task", "protocol")
+    known = list(lab.conditions.BY)
     return list(
         dict.fromkeys(one_of("way to tell trials apart", n, known) for n in text.split(","))
     )

@@ -10,7 +10,7 @@ from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database, check_count, 
 from affcli.cli.table_choice import Tool
 from affcli.cli.terminal import asked, interactive, say, show_either
 from affcli.core.names import one_of
-from affcli.core.specs import EXPERIMENT, REPRODUCE
+from affcli.core.specs import EXPERIMENT, REPRODUCE, Keep
 from affcli.errors import UsageError, one_line
 from affcli.report.learning import summary
 from affcli.report.runs import (
@@ -69,10 +69,13 @@ def list_runs(
 def show_run(
     run_id: RunId, *, database: Database = DEFAULT_DATABASE, as_json: AsJson = False
 ) -> None:
-    """Show one learning run in full."""
+    """Show one learning run in full, also one of which not all was kept."""
     with opened(database) as store:
         run = store.learning.run(run_id)
-        found = run, store.runs.belongings(run_id), store.results.behavior_groups(run_id)
+        groups = store.results.behavior_groups(run_id) if run.kept is Keep.ALL else None
+        found = run, store.runs.belongings(run_id), groups
+    if groups is None:
+        say(f"its behaviors were not kept (--keep {run.kept})")
     show_either(
         as_json=as_json,
         results=lambda: [run_in_full_json(*found)],

@@ -1,7 +1,7 @@
 """Conditions compared robot by robot, and how many robots it would take."""
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from affcli.analysis.paired import LEVEL, Comparison, Counts, in_common, summed
 from affcli.analysis.power import Plan, plan
@@ -12,6 +12,8 @@ from affcli.core.specs import LIVES
 from affcli.errors import UsageError
 from affcli.lab.sessions import finished_session
 from affcli.store import Store
+
+T = TypeVar("T")
 
 BY: dict[str, tuple[str, ...]] = {
     "tool": ("tool", "shape"),
@@ -41,9 +43,14 @@ def sessions_named(store: Store, numbers: Sequence[int]) -> list[Condition]:
         session = finished_session(store, number, LIVES)
         if session is not None:
             found.append(Condition(f"session {session.id}", session))
-    if len(set(numbers)) < len(numbers):
-        raise UsageError(f"--session {numbers[-1]}: named twice; name another one")
+    for number in repeated(numbers):
+        raise UsageError(f"--session {number}: named twice; name another one")
     return found
+
+
+def repeated(values: Sequence[T]) -> list[T]:
+    """Return the values that were there before, in order."""
+    return [value for number, value in enumerate(values) if value in values[:number]]
 
 
 def experiment_named(store: Store, name: str) -> list[Condition]:

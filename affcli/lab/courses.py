@@ -12,7 +12,7 @@ from affcli.analysis.paired import summed
 from affcli.config import known_settings
 from affcli.core.names import one_of
 from affcli.errors import UsageError
-from affcli.lab.conditions import Condition
+from affcli.lab.conditions import Condition, repeated
 from affcli.lab.run_parts import settings_of
 from affcli.store import Store
 
@@ -94,10 +94,11 @@ def _setting_values(conditions: Sequence[Condition], name: str) -> list[float]:
         if isinstance(value, str):
             raise UsageError(f"{name} is no number; name another setting, or minutes or rows")
         values.append(float(value))
-    if len(set(values)) < len(values):
+    for value in repeated(values):
+        others = ", ".join(other for other in _swept(conditions) if other != name)
         raise UsageError(
-            f"{name} is {values[0]:g} in more than one condition; it differs: "
-            f"{', '.join(_swept(conditions)) or 'no setting does'}"
+            f"{name} is {value:g} in more than one condition; it differs: "
+            f"{others or 'no other setting does'}"
         )
     return values
 

@@ -33,10 +33,7 @@ def finished_session(store: Store, number: int | None, kinds: Sequence[str]) -> 
     if number is None:
         finished = [s for s in sessions if s.spec.kind in kinds and s.status == "done"]
         return max(finished, key=lambda s: s.id, default=None)
-    found = next((s for s in sessions if s.id == number), None)
-    if found is None:
-        known = f"they are numbered 1 to {sessions[-1].id}" if sessions else "there are none yet"
-        raise UsageError(f"no session {number}; {known}")
+    found = store.sessions.one(number)
     kind, wanted = one_line(found.spec.kind, 40), " or ".join(kinds)
     if found.spec.kind not in kinds:
         others = [str(s.id) for s in sessions if s.spec.kind in kinds and s.status == "done"]

@@ -9,21 +9,13 @@ from affcli.analysis.regions import region_at, region_of
 from affcli.core.geometry import Point
 from affcli.core.records import LearningRunInfo, StoredRow, StoredStep
 from affcli.core.row_filter import Column, Relation, RowFilter
-from affcli.core.specs import LIVES, Keep, LearningSpec, TrialSpec
-from affcli.errors import UsageError
+from affcli.core.specs import LIVES, LearningSpec, TrialSpec
 from affcli.store import Store
 
 Made = TypeVar("Made")
 Write = Callable[[Sequence[Column], Iterable[tuple[Any, ...]]], Made]
 """Makes something of columns and their values."""
 
-_NOT_ENOUGH: Mapping[Relation, tuple[Keep, ...]] = {
-    "rows": (Keep.TRIALS,),
-    "behaviors": (Keep.TRIALS, Keep.ROWS),
-    "trials": (),
-    "steps": (Keep.TRIALS,),
-}
-"""With what of a run was kept these are not all there."""
 REGION = Column("region", str)
 """The column that is not in the database."""
 
@@ -55,7 +47,6 @@ def listed_rows(
         wanted: which rows.
         region: only those in which the attractor was nearest to this part of the tool.
     """
-    _require_kept(runs, Keep.TRIALS)
     specs = {run.id: run.spec for run in runs}
     found = store.selections.rows(_unless_by_region(wanted, region))
     named = (
@@ -97,7 +88,6 @@ def taken_out(
     def write_counted(columns: Sequence[Column], rows: Iterable[tuple[Any, ...]]) -> Made:
         return write(columns, counted(rows))
 
-    _require_kept(runs, *_NOT_ENOUGH[what])
     if what != "rows":
         made = store.selections.extract(what, wanted, write_counted)
         return made, count
@@ -109,16 +99,6 @@ def taken_out(
 
     made = store.selections.extract(what, _unless_by_region(wanted, region), write_rows)
     return made, count
-
-
-def _require_kept(runs: Iterable[LearningRunInfo], *little: Keep) -> None:
-    """Refuse to give as whole what was not kept of a run."""
-    for run in runs:
-        if run.kept in little:
-            raise UsageError(
-                f"run {run.id}: only its {run.kept} were kept (--keep {run.kept}); choose others "
-                "with --run"
-            )
 
 
 def _with_region(

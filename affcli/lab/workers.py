@@ -6,6 +6,7 @@ no room for, and threads that may wait for ever when a process cannot be started
 
 import gc
 import os
+import pickle
 import subprocess
 import sys
 import traceback
@@ -19,7 +20,7 @@ from queue import SimpleQueue
 from threading import Thread
 from typing import Any, TypeVar
 
-from affcli.errors import AffcliError
+from affcli.errors import WorkersDiedError
 
 BEGIN = (
     "import sys; from multiprocessing.connection import Connection; "
@@ -65,7 +66,7 @@ def working(
             and that one of them died.
 
     Raises:
-        AffcliError: worker processes died, and none can be started in their place.
+        WorkersDiedError: worker processes died, and none can be started in their place.
     """
     pool: list[_Worker] = []
     try:
@@ -185,6 +186,8 @@ class _Pool:
                     if worker.task is None and (self._again or self._begun < most):
                         self._give(worker)
                 busy = [worker for worker in self._workers if worker.task is not None]
+                if not busy:
+                    continue  # all died before they took a task: others are in their place
                 ready = wait([worker.pipe for worker in busy])
                 for worker in busy:
                     if worker.pipe in ready:
@@ -231,7 +234,7 @@ class _Pool:
             if self._lost[task] < LOSSES:
                 self._again.append(task)
             else:
-                self._waiting[task] = Failed(AffcliError(DIED))
+                self._waiting[task] = Failed(WorkersDiedError(DIED))
         self._warn("a worker process died, perhaps memory ran out; another does its work again")
         new: list[_Worker] = []
         why = _start(new, 1, self._work)
@@ -240,7 +243,7 @@ class _Pool:
             return
         _end(new)
         if not self._workers:
-            raise AffcliError(
+            raise WorkersDiedError(
                 f"all worker processes died and none can be started ({why}); what is saved is "
                 "kept: run the command again with fewer --workers, or with --workers 1"
             )
@@ -269,11 +272,19 @@ def serve(pipe: "Connection[Any, Any]") -> None:
     while True:
         task = tasks.get()
         try:
-            answer: tuple[bool, Any] = True, work(task)
+            pipe.send((True, work(task)))
         except Exception as error:  # noqa: BLE001  # the parent raises it
             error.add_note(traceback.format_exc())
-            answer = False, error
-        pipe.send(answer)
+            pipe.send((False, _as_sent(error)))
+
+
+def _as_sent(error: Exception) -> Exception:
+    """Return an error, or what tells of it where it does not come through a pipe."""
+    try:
+        pickle.loads(pickle.dumps(error))  # noqa: S301  # our own
+    except Exception:  # noqa: BLE001  # whatever its class does
+        return RuntimeError("".join(traceback.format_exception(error)))
+    return error
 
 
 def _receive(pipe: "Connection[Any, Any]", tasks: "SimpleQueue[Any]") -> None:

@@ -47,9 +47,9 @@ def _unusual(run: LearningRunInfo) -> Iterator[str]:
 
 
 def run_tables(
-    run: LearningRunInfo, belongings: Belongings, groups: Sequence[BehaviorGroup]
+    run: LearningRunInfo, belongings: Belongings, groups: Sequence[BehaviorGroup] | None
 ) -> tuple[Sheet, ...]:
-    """Return one run in full, and what it learned by behavior."""
+    """Return one run in full, and what it learned by behavior unless that was not kept."""
     spec = run.spec
     wanted = (
         f"{spec.hours:g} h" if spec.hours is not None else many(spec.behaviors or 0, "behavior")
@@ -71,7 +71,7 @@ def run_tables(
     }
     sheet = Sheet(tuple(facts), title=f"Run {run.id}", records=True)
     sheet.add(*facts.values())
-    return sheet, groups_table(run, groups)
+    return (sheet,) if groups is None else (sheet, groups_table(run, groups))
 
 
 def use_words(belongings: Belongings) -> str:
@@ -97,7 +97,7 @@ def kept_json(run: LearningRunInfo, uses: Uses) -> dict[str, Any]:
 
 
 def run_in_full_json(
-    run: LearningRunInfo, belongings: Belongings, groups: Sequence[BehaviorGroup]
+    run: LearningRunInfo, belongings: Belongings, groups: Sequence[BehaviorGroup] | None
 ) -> dict[str, Any]:
     """Return what `run_tables` shows as JSON types."""
     spec = run.spec
@@ -109,5 +109,5 @@ def run_in_full_json(
         "versions": run.versions,
         "steps": belongings.steps,
         "tries": belongings.tries,
-        "groups": groups_json(groups),
+        "groups": None if groups is None else groups_json(groups),
     }

@@ -179,9 +179,10 @@ def numbered(
     """
     found = mappings(connection, wanted.where(table.c.id == number))
     if not found:
-        last = connection.scalar(sa.select(sa.func.max(table.c.id)))
+        # The last id that was given: none is given twice.
+        given = sa.text("SELECT CAST(seq AS INTEGER) FROM sqlite_sequence WHERE name = :name")
+        last = connection.scalar(given, {"name": table.name}) or 0
         known = f"they are numbered 1 to {last}" if last else "there are none yet"
-        # No id is given twice.
-        known = "it was deleted" if number <= (last or 0) else known
+        known = "it was deleted" if number <= last else known
         raise UsageError(f"no {what} {number}; {known}")
     return found[0]

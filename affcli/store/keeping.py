@@ -2,20 +2,22 @@
 
 import sqlalchemy as sa
 
+from affcli.core.row_filter import Relation
 from affcli.core.specs import Keep
 from affcli.errors import UsageError
 from affcli.store.connection import Database
 from affcli.store.tables import learning_run, trial
 
-NEEDED = {
+NEEDED: dict[Relation, tuple[Keep, ...]] = {
     "behaviors": (Keep.ALL,),
     "rows": (Keep.ALL, Keep.ROWS),
     "steps": (Keep.ALL, Keep.ROWS),
+    "trials": tuple(Keep),
 }
 """With what of a life was kept these are there."""
 
 
-def require_kept(database: Database, what: str, runs: sa.ColumnElement[bool]) -> None:
+def require_kept(database: Database, what: Relation, runs: sa.ColumnElement[bool]) -> None:
     """Make sure that something was kept of learning runs, or of the trials from their tables.
 
     Args:

@@ -1,8 +1,9 @@
 """Several databases into one: the robots of the same experiment, each once, whoever lived it."""
 
-from collections.abc import Callable, Iterable, Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +13,11 @@ from affcli.core.specs import REPRODUCE
 from affcli.errors import DatabaseError, UsageError, one_line
 from affcli.store.columns import COLUMNS
 from affcli.store.connection import insert_many, insert_one, mappings, tuples
+from affcli.store.database_file import require_place
 from affcli.store.experiments import sessions_of, settle
-from affcli.store.opening import open_store
+from affcli.store.learning import COUNTERS
+from affcli.store.opening import Store, open_store
+from affcli.store.replacing import replacing
 from affcli.store.tables import (
     affordance,
     behavior,
@@ -23,10 +27,11 @@ from affcli.store.tables import (
     step,
     tool,
     trial,
+    verification,
 )
 
 RUN_SUMS = ("behaviors", "rows", "resets", "redraws", "robot_seconds")
-TRIAL_SUMS = ("outcome", "steps", "robot_seconds")
+TRIAL_SUMS = ("protocol", "tool", "planner", "outcome", "steps", "robot_seconds")
 """What two records of one run, or of one trial, must have alike: the rest follows from them."""
 LEFT_OUT = {
     "learning runs of affcli learn": sa.select(learning_run).where(
@@ -35,8 +40,12 @@ LEFT_OUT = {
     "sessions of affcli solve and break-tool": sa.select(session).where(
         session.c.kind.in_(("solve", "break-tool"))
     ),
+    "verifications of affcli verify": sa.select(verification),
 }
-"""What is not merged: its counters depend on all that was done with a table, in its order."""
+"""What is not merged: it depends on all that was done with a table, in its order.
+
+The counters that it moved are copied as they were when the table was learned.
+"""
 
 Row = dict[str, Any]
 
@@ -101,17 +110,24 @@ class _Life:
         )
         return mappings(self.connection, of_robot.order_by(trial.c.id))
 
+    def condition(self, row: Row) -> int:
+        """Return to which condition one of its runs or trials belongs."""
+        return self.sessions.index(row["session_id"])
+
     def sums(self) -> list[tuple[str, list[Any]]]:
         """Return in words what it learned and tried, each with what came of it."""
         return [
             *(
-                (f"the {row['tool']} it learned", [row["key"], *(row[name] for name in RUN_SUMS)])
+                (
+                    f"the {row['tool']} it learned",
+                    [self.condition(row), row["key"], *(row[name] for name in RUN_SUMS)],
+                )
                 for row in self.learned()
             ),
             *(
                 (
                     f"its trial with the {row['shape']} at goal {row['goal']} from {row['start']}",
-                    [row["planner"], *(row[name] for name in TRIAL_SUMS)],
+                    [self.condition(row), *(row[name] for name in TRIAL_SUMS)],
                 )
                 for row in self.trials()
             ),
@@ -146,13 +162,31 @@ def merge(
             raise UsageError(f"--into {one_line(into)} is one of those to merge; name another file")
     with ExitStack() as stack:
         stores = [stack.enter_context(open_store(p, create=False, write=False)) for p in sources]
-        target = stack.enter_context(open_store(into, create=True, write=True))
+        target = stack.enter_context(_opened(into))
         readers = [stack.enter_context(store.database.reading()) for store in stores]
         with target.database.writing() as connection:
             merging = _Merging(connection, into, now)
             for reader, path in zip(readers, sources, strict=True):
                 merging.take_note(reader, path)
             return merging.bring(progress)
+
+
+@contextmanager
+def _opened(into: Path) -> Iterator[Store]:
+    """Open the target; one that is not there appears when the merge is done, or not at all."""
+    require_place(into, create=True, write=True)
+    if into.exists():
+        with open_store(into, create=True, write=True) as store:
+            yield store
+        return
+    with replacing(into) as part:
+        with open_store(part, create=True, write=True) as store:
+            yield store
+        if into.exists():
+            raise DatabaseError(
+                f"{one_line(into)}: another process made it meanwhile; nothing was merged into it: "
+                "run the command again"
+            )
 
 
 class _Merging:
@@ -255,12 +289,12 @@ class _Merging:
             self._copy(many, life)
             return True
         there = _Life(self._connection, self._path, many.sessions, life.robot, tuple(runs))
-        for (what, ours), (_, theirs) in zip(there.sums(), life.sums(), strict=False):
-            if ours != theirs:
-                raise DatabaseError(
-                    f"{one_line(life.path)}: robot {life.robot} of {many.what} is another than in "
-                    f"{one_line(self._path)}: {what} differs; were they made by other versions?"
-                )
+        difference = _difference(there, life)
+        if difference:
+            raise DatabaseError(
+                f"{one_line(life.path)}: robot {life.robot} of {many.what} is another than in "
+                f"{one_line(self._path)}: {difference}"
+            )
         return False
 
     def _copy(self, many: _Many, life: _Life) -> None:
@@ -292,7 +326,10 @@ class _Merging:
         """Copy the rows that belong to runs or trials, whose numbers in the target are given."""
         names = COLUMNS[table.name]
         owner = table.c[names[0]]
-        wanted = sa.select(*(table.c[name] for name in names)).where(owner.in_(owners))
+        columns = (
+            sa.literal(1).label(name) if name in COUNTERS else table.c[name] for name in names
+        )
+        wanted = sa.select(*columns).where(owner.in_(owners))
         copied = []
         for first, second, *rest in tuples(life.connection, wanted.order_by(owner, table.c[order])):
             copied.append((owners[first], tried[second] if tried else second, *rest))
@@ -316,3 +353,16 @@ class _Merging:
 def _without(row: Row, name: str) -> Row:
     """Return a row without one of its columns."""
     return {key: value for key, value in row.items() if key != name}
+
+
+def _difference(one: _Life, other: _Life) -> str:
+    """Return in words the first thing in which two records of a robot differ, "" if in none."""
+    lives = sorted(((life.sums(), life.path) for life in (other, one)), key=lambda p: -len(p[0]))
+    (longer, _), (shorter, path) = lives
+    for more, less in zip_longest(longer, shorter):
+        if more != less:
+            what, _ = more
+            if len(longer) > len(shorter) and (less is None or less[0] != what):
+                return f"{what} is not in {one_line(path)}; was it deleted?"
+            return f"{what} differs; were they made by other versions?"
+    return ""

@@ -9,6 +9,7 @@ import sqlalchemy as sa
 from affcli.core.records import StoredRow
 from affcli.core.row_filter import Cell, Column, Relation, RowFilter
 from affcli.store.connection import Database
+from affcli.store.keeping import require_kept
 from affcli.store.reading import stored_row
 from affcli.store.rows import params_to_json
 from affcli.store.tables import affordance, behavior, learning_run, step, trial, wide
@@ -23,7 +24,12 @@ class Selections:
     database: Database
 
     def rows(self, wanted: RowFilter) -> tuple[StoredRow, ...]:
-        """Return the rows that the filter leaves, run by run, oldest first."""
+        """Return the rows that the filter leaves, run by run, oldest first.
+
+        Raises:
+            UsageError: those of one of its learning runs were not kept.
+        """
+        require_kept(self.database, "rows", _learned_in(learning_run.c.id, wanted))
         ids = _rows(wanted).with_only_columns(wide.c.id)
         rows = (
             sa.select(affordance)
@@ -47,7 +53,11 @@ class Selections:
             what: of which view or table.
             wanted: for all but ``rows`` only its runs, tool and limit count.
             write: makes something of the columns and their values.
+
+        Raises:
+            UsageError: of one of its learning runs they were not kept.
         """
+        require_kept(self.database, what, _learned_in(learning_run.c.id, wanted))
         statement, relation = _STATEMENTS[what](wanted), _RELATIONS[what]
         with self.database.reading() as connection:
             described = connection.exec_driver_sql(f"PRAGMA table_info({relation.name})").all()

@@ -9,7 +9,7 @@ import sqlalchemy as sa
 from affcli.core.records import SessionInfo
 from affcli.core.specs import REPRODUCE, RobotRecord, SessionSpec
 from affcli.store import reading, rows
-from affcli.store.connection import Database, insert_many, insert_one
+from affcli.store.connection import Database, insert_many, insert_one, numbered
 from affcli.store.learning import insert_run
 from affcli.store.packing import PackedRobot, pack_robot
 from affcli.store.tables import affordance, behavior, session, trial
@@ -43,6 +43,16 @@ class Sessions:
         if kinds:
             wanted = wanted.where(session.c.kind.in_(kinds))
         return tuple(map(reading.session, self.database.mappings(wanted)))
+
+    def one(self, number: int) -> SessionInfo:
+        """Return a session.
+
+        Raises:
+            UsageError: there is none of that number; the message says which there are.
+        """
+        with self.database.reading() as connection:
+            found = numbered(connection, sa.select(session), session, "session", number)
+        return reading.session(found)
 
     def finish(self, session_id: int, now: str) -> None:
         """Mark a session as done; one that was done before stays as it is."""

@@ -8,6 +8,7 @@ import pytest
 from affcli.core.limits import LONGEST_NOTE
 from tests.cli.program import contents, done, names_in, refused, rows, started, wait_until
 from tests.cli.pseudo_terminal import on_terminal
+from tests.lab.quick import altered
 
 LEARN = ("learn", "--behaviors", "20", "--tool")
 BELONGING = {
@@ -203,3 +204,32 @@ def test_a_run_that_is_deleted_while_it_learns_ends_in_one_line(tmp_path: Path) 
 def test_a_run_that_there_is_not_is_a_usage_error(shared: Path) -> None:
     line = refused(2, "runs", "delete", "9", "--yes", "--db", shared)
     assert line == "affcli: no learning run 9; they are numbered 1 to 2"
+
+
+def test_what_was_deleted_is_told_from_what_never_was(shared: Path) -> None:
+    """Also of what was the last, and where nothing is left."""
+    for run in ("2", "1"):
+        done("runs", "delete", run, "--yes", "--db", shared)
+        line = refused(2, "runs", "show", run, "--db", shared)
+        assert line == f"affcli: no learning run {run}; it was deleted"
+    line = refused(2, "runs", "show", "3", "--db", shared)
+    assert line == "affcli: no learning run 3; they are numbered 1 to 2"
+    assert "no affordance 1; it was deleted" in refused(2, "table", "show", "1", "--db", shared)
+    assert "no trial 1; it was deleted" in refused(2, "replay", "1", "--db", shared)
+
+
+@pytest.mark.parametrize("kept", ["rows", "trials"])
+def test_a_run_of_which_not_all_was_kept_is_shown(shared: Path, kept: str) -> None:
+    whole = done("runs", "show", "1", "--json", "--db", shared).result
+    altered(
+        shared,
+        "DELETE FROM behavior WHERE learning_run_id = 1",
+        f"UPDATE learning_run SET kept = '{kept}' WHERE id = 1",
+    )
+    shown = done("runs", "show", "1", "--json", "--db", shared)
+    assert shown.result == {**whole, "groups": None}
+    assert shown.err.strip() == f"its behaviors were not kept (--keep {kept})"
+    told = done("runs", "show", "1", "--db", shared)
+    assert "asked for" in told.out
+    assert "what the t-hook affords" not in told.out
+    assert "what the stick affords" in done("runs", "show", "2", "--db", shared).out

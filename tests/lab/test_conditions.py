@@ -84,13 +84,17 @@ def test_a_robot_with_an_invalid_trial_is_left_out_where_it_was(store: Store) ->
 
 
 def test_what_cannot_be_compared_is_named(store: Store) -> None:
-    first, *_ = stored_conditions(store, 2, conditions=2)
+    first, second = stored_conditions(store, 2, conditions=2)
     elsewhere = begun(store, "reproduce", seed=8)
     store.sessions.finish(elsewhere, "2026-01-02T03:04:05+00:00")
     with pytest.raises(UsageError, match="no robot in common: they are of seeds 7 and 8"):
         compared(store, sessions_named(store, [first, elsewhere]), None, ())
     with pytest.raises(UsageError, match="--session 1: named twice"):
-        sessions_named(store, [first, first])
+        sessions_named(store, [first, first, second])
+    with pytest.raises(UsageError, match="--session 2: named twice"):
+        sessions_named(store, [first, second, second])
+    with pytest.raises(UsageError, match="no session 99; they are numbered 1 to 3"):
+        sessions_named(store, [first, 99])
     solving = begun(store, "solve")
     with pytest.raises(UsageError, match="is of affcli solve, not of reproduce"):
         sessions_named(store, [first, solving])
@@ -139,6 +143,19 @@ def test_courses_follow_robots_over_minutes_or_rows(store: Store) -> None:
                 assert all(0.0 <= p.mean <= (1.0 if y == "share" else 20.0) for p in line.points)
     (solved, _) = curves_of(store, conditions[:1], "solved", "rows").lines
     assert [point.x for point in solved.points] == [20.0]
+
+
+def test_a_value_that_several_conditions_have_is_named(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tests.store.conditions.NOISE", (None, 0.25, 0.25))
+    conditions = sessions_named(store, stored_conditions(store, 1))
+    with pytest.raises(UsageError) as refused:
+        curves_of(store, conditions, "solved", "sensor.position_noise")
+    assert str(refused.value) == (
+        "sensor.position_noise is 0.25 in more than one condition; it differs: no other setting "
+        "does"
+    )
 
 
 @pytest.mark.parametrize(

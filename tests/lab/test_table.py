@@ -2,7 +2,8 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from typing import Any
+from functools import partial
+from typing import Any, get_args
 
 import pytest
 from shapely import Point as ShapelyPoint
@@ -11,13 +12,15 @@ from shapely import Polygon
 from affcli.analysis.regions import UNKNOWN, region_of
 from affcli.config import Settings, settings_with
 from affcli.core.records import LearningRunInfo, StoredRow
-from affcli.core.row_filter import Column, RowFilter
+from affcli.core.row_filter import Column, Relation, RowFilter
+from affcli.core.specs import Keep
 from affcli.core.tool import unknown_tool
+from affcli.errors import UsageError
 from affcli.lab.run_parts import RunParts
 from affcli.lab.table import every_run, history_of, listed_rows, taken_out
 from affcli.simulation.tools.paper import TOOL_PARTS
 from affcli.store import Store
-from tests.lab.quick import NOW, learned, spec_of
+from tests.lab.quick import NOW, altered, learned, spec_of
 from tests.store.records import VERSIONS, begun, robot_record, trial_record, trial_spec
 
 NARROW = settings_with({"tools": {"bar_reach": 3.0}}, "a test")
@@ -143,3 +146,27 @@ def test_a_tool_that_nobody_knows_has_no_regions(store: Store, runs: list[Learni
     rows = listed_rows(store, [unknown], RowFilter(runs=(1,)), None)
     assert {region for _, region in rows} == {UNKNOWN}
     assert listed_rows(store, [unknown], RowFilter(runs=(1,)), "handle") == []
+
+
+@pytest.mark.parametrize("kept", list(Keep))
+@pytest.mark.parametrize("what", get_args(Relation))
+def test_what_was_not_kept_is_not_taken_out_as_if_it_were_all(
+    store: Store, runs: list[LearningRunInfo], what: Relation, kept: Keep
+) -> None:
+    run, other = runs[0], runs[-1]
+    altered(store.path, f"UPDATE learning_run SET kept = '{kept}' WHERE id = {run.id}")
+    enough: dict[Relation, set[Keep]] = {
+        "rows": {Keep.ALL, Keep.ROWS},
+        "behaviors": {Keep.ALL},
+        "steps": {Keep.ALL, Keep.ROWS},
+        "trials": set(Keep),
+    }
+    for one in (run, other):
+        wanted = RowFilter(runs=(one.id,))
+        take = partial(taken_out, store, what, [one], wanted, None, keep)
+        if one is run and kept not in enough[what]:
+            words = rf"run 1: its {what} were not kept \(--keep {kept}\); .* makes them again"
+            with pytest.raises(UsageError, match=words):
+                take()
+        else:
+            take()

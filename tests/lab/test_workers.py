@@ -14,9 +14,9 @@ from pathlib import Path
 
 import pytest
 
-from affcli.errors import AffcliError, SimulationDivergedError
+from affcli.errors import SimulationDivergedError, WorkersDiedError
 from affcli.lab.doctor import facts
-from affcli.lab.workers import Failed, in_order
+from affcli.lab.workers import Failed, in_order, working
 from affcli.store import Fact
 
 ROOTS = [math.sqrt(n) for n in range(30)]
@@ -77,6 +77,24 @@ def diverge(number: int) -> int:
     if number == 1:
         raise SimulationDivergedError("too stiff; soften it")
     return number
+
+
+class TwoWordsError(Exception):
+    """An error that pickle can write and not read: it wants two words, and keeps one."""
+
+    def __init__(self, first: str, second: str) -> None:
+        super().__init__(f"{first} {second}")
+
+
+def raise_two_words(number: int) -> int:
+    if number == 1:
+        raise TwoWordsError("too", "stiff")
+    return number
+
+
+def answer_with_a_function(number: int) -> object:
+    """Answer once with what no pipe can carry."""
+    return (lambda: number) if number == 1 else number
 
 
 def never(line: str) -> None:
@@ -190,6 +208,8 @@ def test_a_task_of_which_workers_always_die_fails_and_the_others_do_not() -> Non
     failed = answers.pop(2)
     assert answers == [0, 1, 3, 4, 5]
     assert isinstance(failed, Failed)
+    assert isinstance(failed.error, WorkersDiedError)
+    assert failed.error.exit_code == 4
     assert "its worker process died ten times, perhaps memory ran out" in str(failed.error)
     assert len(told) == 10
 
@@ -198,8 +218,37 @@ def test_with_no_worker_left_it_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     answers = in_order(die_after(2), range(9), 2, str)
     assert next(answers) == 0
     monkeypatch.setattr(sys, "executable", "/bin/false")
-    with pytest.raises(AffcliError, match=r"all worker processes died .* with --workers 1"):
+    with pytest.raises(WorkersDiedError, match=r"all worker processes died .* with --workers 1"):
         list(answers)
+
+
+@pytest.mark.parametrize("rounds_died", [1, 2])
+def test_workers_that_all_die_between_two_rounds_are_replaced(rounds_died: int) -> None:
+    told: list[str] = []
+    pids: list[int] = []
+    with working(own_process, 2, told.append) as answers:
+        for _ in range(rounds_died):
+            pids = [pid for pid in answers(range(40)) if isinstance(pid, int)]
+            for pid in set(pids):
+                os.kill(pid, signal.SIGKILL)
+            time.sleep(0.1)  # until their pipes are closed
+        again = list(answers(range(40)))
+    assert len(again) == 40
+    assert not set(again) & set(pids)
+    assert len(told) == 2 * rounds_died
+
+
+@pytest.mark.parametrize(
+    ("work", "words"),
+    [(raise_two_words, "TwoWordsError: too stiff"), (answer_with_a_function, "lambda")],
+)
+def test_what_no_pipe_can_carry_is_an_error_of_its_task_alone(
+    work: Callable[[int], object], words: str
+) -> None:
+    first, failed, *others = in_order(work, range(9), 2, never)
+    assert [first, *others] == [0, *range(2, 9)]
+    assert isinstance(failed, Failed)
+    assert words in str(failed.error)
 
 
 @pytest.mark.parametrize("workers", [1, 2])

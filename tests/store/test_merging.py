@@ -1,11 +1,13 @@
 """Databases of several machines brought together: each robot once, and the same as in one go."""
 
+import sqlite3
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 
 import pytest
 
+from affcli.core.specs import Counters
 from affcli.errors import DatabaseError, UsageError
 from affcli.lab.conducting import begin, run
 from affcli.lab.definition import experiment_of
@@ -13,7 +15,17 @@ from affcli.lab.experiment import Experiment
 from affcli.store import Merged, Store, check, merge, open_store
 from tests.cli.program import contents
 from tests.lab.quick import NOW, altered, now
-from tests.store.records import VERSIONS, begun, learned, robot_record
+from tests.store.records import (
+    VERSIONS,
+    begun,
+    learned,
+    replication,
+    robot_record,
+    save_trial,
+    trial_spec,
+    trial_step,
+    verification_spec,
+)
 
 TABLES = {
     "experiment": {"name": "shared", "robots": 10, "seed": 5},
@@ -124,6 +136,101 @@ def test_what_contradicts_is_refused_and_nothing_changed(
     ):
         merge([other], path, NOW)
     assert contents(path) == before
+
+
+@pytest.mark.parametrize("lacks", ["source", "target"])
+@pytest.mark.parametrize("which", ["LIMIT 1 OFFSET 2", "DESC LIMIT 1"])
+def test_a_robot_that_lacks_a_trial_is_refused(
+    shards: list[Path], tmp_path: Path, lacks: str, which: str
+) -> None:
+    """One in the middle or the last one."""
+    paths = {name: tmp_path / f"{name}.db" for name in ("source", "target")}
+    for path in paths.values():
+        path.write_bytes(shards[1].read_bytes())
+    with closing(sqlite3.connect(paths[lacks])) as driver:
+        wanted = f"SELECT id, shape, goal, start FROM trial ORDER BY id {which}"
+        number, shape, goal, start = driver.execute(wanted).fetchone()
+    altered(
+        paths[lacks],
+        f"DELETE FROM step WHERE trial_id = {number}",
+        f"DELETE FROM trial WHERE id = {number}",
+    )
+    before = contents(paths["target"])
+    with pytest.raises(DatabaseError) as refused:
+        merge([paths["source"]], paths["target"], NOW)
+    assert str(refused.value) == (
+        f"{paths['source']}: robot 1 of experiment shared is another than in {paths['target']}: "
+        f"its trial with the {shape} at goal {goal} from {start} is not in {paths[lacks]}; was it "
+        "deleted?"
+    )
+    assert contents(paths["target"]) == before
+
+
+@pytest.mark.parametrize(
+    ("change", "what"),
+    [
+        ("UPDATE trial SET goal = '7' WHERE id = 3", "its trial with the stick at goal 7 from 3"),
+        ("UPDATE trial SET start = '7' WHERE id = 3", "its trial with the stick at goal 1 from 7"),
+        ("UPDATE trial SET planner = 'p' WHERE id = 3", "its trial with the stick at goal 1 from"),
+        ("UPDATE trial SET session_id = 2 WHERE id = 3", "its trial with the stick at goal 1"),
+        ("UPDATE learning_run SET tool = 'hoe' WHERE id = 1", "the hoe it learned"),
+    ],
+)
+def test_a_robot_that_did_other_things_is_refused(
+    shards: list[Path], tmp_path: Path, change: str, what: str
+) -> None:
+    source, target = tmp_path / "source.db", tmp_path / "target.db"
+    for path in (source, target):
+        path.write_bytes(shards[1].read_bytes())
+    altered(source, change)
+    before = contents(target)
+    with pytest.raises(DatabaseError, match=rf"robot 1 of experiment shared .*: {what}.* differs"):
+        merge([source], target, NOW)
+    assert contents(target) == before
+
+
+def test_rows_that_solve_used_are_copied_as_they_were_learned(tmp_path: Path) -> None:
+    """The trials and verifications that moved their counters are left out."""
+    source, target = tmp_path / "a.db", tmp_path / "all.db"
+    with opened(source) as store:
+        lived = begun(store, "reproduce")
+        store.sessions.save_robot({lived: VERSIONS}, robot_record(0), NOW)
+        run_id = store.learning.runs(session_id=lived)[0].id
+        (first, second), ids = store.learning.table(run_id)
+        used = trial_spec(counters=Counters.STORED, tool="stick")
+        save_trial(store, begun(store), run_id, used, [trial_step(first)])
+        tried = [(*replication(second), ids[second.step])]
+        store.verifications.save(run_id, verification_spec(), tried, VERSIONS, NOW, NOW)
+    merged = merge([source], target, NOW)
+    assert merged.left_out == {
+        "sessions of affcli solve and break-tool": 1,
+        "verifications of affcli verify": 1,
+    }
+    assert [finding for finding in check(source) if finding.wrong] == []
+    assert [finding for finding in check(target) if finding.wrong] == []
+    assert merge([source], target, NOW) == Merged(0, 1, merged.left_out)
+
+
+@pytest.mark.parametrize("existing", [False, True])
+def test_a_merge_that_fails_leaves_no_new_file(
+    shards: list[Path], tmp_path: Path, *, existing: bool
+) -> None:
+    path, other = tmp_path / "all.db", tmp_path / "other.db"
+    other.write_bytes(shards[1].read_bytes())
+    altered(other, "UPDATE trial SET steps = steps + 1 WHERE id = 3")
+    if existing:
+        merge(shards[:1], path, NOW)
+    with pytest.raises(DatabaseError, match="robot 1 of"):
+        merge([shards[1], other], path, NOW)
+    assert {one.name for one in tmp_path.iterdir()} == {"other.db", *(["all.db"] * existing)}
+
+
+def test_a_file_that_appears_during_a_merge_is_kept(shards: list[Path], tmp_path: Path) -> None:
+    path = tmp_path / "all.db"
+    with pytest.raises(DatabaseError, match=r"all.db: another process made it meanwhile"):
+        merge(shards[:1], path, NOW, lambda *_: path.write_text("mine"))
+    assert path.read_text() == "mine"
+    assert list(tmp_path.iterdir()) == [path]
 
 
 def test_a_merge_that_is_interrupted_changes_nothing(shards: list[Path], tmp_path: Path) -> None:
