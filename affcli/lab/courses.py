@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from affcli.analysis.courses import Course, Line, course_line, swept_line
 from affcli.analysis.curves import INTERVALS, Curve
-from affcli.analysis.paired import summed
+from affcli.analysis.paired import all_tried, summed
 from affcli.config import known_settings
 from affcli.core.names import one_of
 from affcli.errors import UsageError
@@ -69,7 +69,7 @@ def curves_of(store: Store, conditions: Sequence[Condition], y: str, x: str | No
             cells = store.results.solved_by_cell(condition.session.id, ())
             for cell, counts in summed(cells).items():
                 most = max(trials for trials, _ in counts.values())
-                solved = [float(count) for trials, count in counts.values() if trials == most]
+                solved = all_tried(counts)
                 panels[f"{cell.protocol}, of {most}", most][place] = solved
         else:
             ends = [getattr(one, y)[-1] for one in courses[number].values()]

@@ -9,9 +9,9 @@ from threading import Timer
 from types import SimpleNamespace
 
 import pytest
-from tests.attack.attacks import has_database, named, plainly
 
 from affcli.store import waiting
+from tests.attack.attacks import has_database, named, plainly
 from tests.cli.program import affcli, names_in, one_printable_line
 from tests.fuzz.commands import Command
 

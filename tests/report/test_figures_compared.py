@@ -50,8 +50,7 @@ def test_each_difference_stands_in_its_row_with_its_interval() -> None:
     assert stick.interval is None
     bars = [tuple(at[:, 0]) for _, at in lines if len(at) == 2 and at[0][1] == 1.0]
     assert bars == [hook.interval]
-    assert "not drawn: 1 the same in all robots" in "\n".join(texts(figure))
-    assert "solved by a robot: two moves less paper" in texts(figure)
+    assert "solved by a robot: two moves minus paper" in texts(figure)
 
 
 def test_several_conditions_differ_in_mark_and_colour() -> None:
@@ -103,7 +102,7 @@ def test_the_tables_fit_the_screen(columns: int) -> None:
     words = " ".join(text.split())
     for name in ("two moves", "three moves"):
         assert f"{name} against paper: 12 pairs of robots" in words
-    assert "corrected by Holm for 4 and 4 tests" in words
+    assert "corrected by Holm in each table (3 and 4 tests)" in words
 
 
 def test_marks_of_markdown_and_latex_are_escaped() -> None:
