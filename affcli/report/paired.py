@@ -52,10 +52,15 @@ def _table(
     headings, words = cell_words(cells)
     robots = many(max(one.robots for one in differences), "pair") + " of robots"
     if label:
-        headings, words = (label,), [(total_words(one, cells),) for one in differences]
+        headings, words = (label,), [(total_words(cell, cells),) for cell in cells]
     each = sorted({one.trials for one in differences})
     of = f"{each[0]:g}" if len(each) == 1 else f"{each[0]:g} to {each[-1]:g}"
-    whole = f"{other.name} against {result.against.name}: {robots}"
+    whole = f"{other.name} against {result.against.name}: {robots}, "
+    if label and len(each) > 1:
+        parts = (f"{w} of {one.trials:g}" for (w,), one in zip(words, differences, strict=True))
+        whole += ", ".join(parts) + " trials"
+    else:
+        whole += f"of {of} trials"
     table = Sheet(
         (*headings, result.against.name, other.name, "change", "95 % interval", "d", "+/-", "p"),
         title=whole if label else f"Cells of {of} trials",
@@ -131,10 +136,10 @@ def held_words(cell: Cell) -> str:
     return cell.tool if cell.shape in ("", cell.tool) else f"{cell.tool} as {cell.shape}"
 
 
-def total_words(one: Difference, cells: Sequence[Cell]) -> str:
-    """Return a protocol with its number of trials, and the task set where there are several."""
-    tasks = f", {one.cell.task_set}" if len({cell.task_set for cell in cells}) > 1 else ""
-    return one_line(f"{one.cell.protocol}{tasks}, of {one.trials:g}", 60)
+def total_words(cell: Cell, cells: Sequence[Cell]) -> str:
+    """Return a protocol, and the task set where there are several."""
+    tasks = f", {cell.task_set}" if len({one.task_set for one in cells}) > 1 else ""
+    return one_line(f"{cell.protocol}{tasks}", 60)
 
 
 def whole_words(cell: Cell) -> str:

@@ -137,8 +137,23 @@ def test_courses_follow_robots_over_minutes_or_rows(store: Store) -> None:
                 assert xs == sorted(xs)
                 assert len(xs) > 10
                 assert all(0.0 <= p.mean <= (1.0 if y == "share" else 20.0) for p in line.points)
-    (solved, _) = curves_of(store, conditions[:1], "solved", "rows").lines
-    assert [point.x for point in solved.points] == [20.0]
+    lines = curves_of(store, conditions, "solved", "rows").lines
+    assert [line.name for line in lines[::2]] == ["session 1", "session 2", "session 3"]
+    assert [[point.x for point in line.points] for line in lines] == [[20.0]] * 6
+
+
+def test_a_grid_has_a_line_for_each_condition_beside_the_sweep(store: Store) -> None:
+    (one, two, three) = sessions_named(store, stored_conditions(store))
+    x = "sensor.position_noise"
+    grid = [
+        condition._replace(name=f"{name}position_noise={value}")
+        for name, value, condition in (("a, ", 1, one), ("a, ", 2, two), ("b, ", 2, two))
+    ]
+    lines = curves_of(store, grid, "solved", x).lines
+    found = [(line.name, [point.x for point in line.points]) for line in lines[::2]]
+    assert found == [("a", [0.008, 0.06]), ("b", [0.06])]
+    with pytest.raises(UsageError, match=f"{x} is .* in more than one condition"):
+        curves_of(store, [one, three, three._replace(name="again")], "solved", x)
 
 
 @pytest.mark.parametrize(
