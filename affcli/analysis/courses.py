@@ -37,13 +37,15 @@ class Line:
 
     Args:
         panel: which measure they are of, where there are several.
-        name: of the condition whose course they are; empty when each is of another condition.
+        name: of the condition, or of what the conditions of the points share; empty for all.
         points: in the order of their x.
+        course: one condition followed over time; else each point is of another condition.
     """
 
     panel: str
     name: str
     points: tuple[Point, ...]
+    course: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,9 +87,11 @@ def course_line(name: str, courses: Sequence[Course], y: str, x: str) -> Line:
         at = fmean(getattr(course, x)[number] for course in courses)
         if not any(map(math.isnan, (at, *values))):
             points.append(Point.of(at, values, 1.0 if y == "share" else math.inf))
-    return Line("", name, tuple(points))
+    return Line("", name, tuple(points), course=True)
 
 
-def swept_line(panel: str, points: Mapping[float, Sequence[float]], most: float) -> Line:
+def swept_line(panel: str, name: str, points: Mapping[float, Sequence[float]], most: float) -> Line:
     """Return a point for each condition, from the values of its robots by where it lies."""
-    return Line(panel, "", tuple(Point.of(x, values, most) for x, values in sorted(points.items())))
+    return Line(
+        panel, name, tuple(Point.of(x, values, most) for x, values in sorted(points.items()))
+    )

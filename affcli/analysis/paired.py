@@ -16,6 +16,9 @@ LEVEL = 0.05
 Counts = Mapping[int, tuple[int, int]]
 """By robot how many trials ended, and how many were solved."""
 
+FIELDS = ("tool", "shape", "goal", "start")
+"""The fields of `Cell` that trials of a protocol and task set can be told apart by."""
+
 
 @dataclass(frozen=True, slots=True)
 class Difference:
@@ -27,6 +30,7 @@ class Difference:
         robots: how many are in both with as many trials.
         trials: of each.
         before, after: solved on average in the condition compared against, and in this one.
+        changes: of each robot what it solves more, from the least to the most.
         interval: 95 % of the mean difference, by Student's t; None where `mean_interval` has none.
         effect: mean over standard deviation of the differences (Cohen's d of pairs); None where
             all differences are the same.
@@ -42,6 +46,7 @@ class Difference:
     trials: float
     before: float
     after: float
+    changes: tuple[int, ...]
     interval: tuple[float, float] | None
     effect: float | None
     better: int
@@ -55,7 +60,7 @@ class Difference:
         cls, condition: str, cell: Cell, pairs: Sequence[tuple[int, int]], trials: float
     ) -> "Difference":
         """Compare (before, after) of each robot, of which there is one at least."""
-        differences = [after - before for before, after in pairs]
+        differences = sorted(after - before for before, after in pairs)
         better, worse = sum(d > 0 for d in differences), sum(d < 0 for d in differences)
         spread = deviation(differences) if len(pairs) > 1 else 0.0
         p = sign_flip_p(differences)
@@ -66,6 +71,7 @@ class Difference:
             trials,
             fmean([before for before, _ in pairs]),
             fmean([after for _, after in pairs]),
+            tuple(differences),
             mean_interval(differences, -trials, trials),
             fmean(differences) / spread if spread else None,
             better,
@@ -97,12 +103,12 @@ class Comparison:
     Args:
         against: the one compared against.
         others: those compared with it.
-        totals: over all trials of a protocol and task set.
+        totals: over all trials of a protocol and task set that both conditions have.
         cells: by tool, goal or what else tells trials apart; none where nothing does.
         same: cells in which all robots agree: nothing to test, so nothing to correct for.
         left_out: by condition the robots that have not as many trials in both; all others pair.
-        unshared: by condition the cells that only it or the one compared against has: nowhere in
-            the differences.
+        unshared: by condition what only it or the one compared against has, each the widest cell
+            of which nothing is in both: nowhere in the differences, whatever tells trials apart.
     """
 
     against: ConditionCounts
@@ -114,8 +120,19 @@ class Comparison:
     unshared: Mapping[str, tuple[Cell, ...]]
 
     @classmethod
-    def of(cls, against: ConditionCounts, others: Sequence[ConditionCounts]) -> "Comparison":
-        """Compare conditions with one; ValueError when one has no robot in common with it."""
+    def of(
+        cls,
+        against: ConditionCounts,
+        others: Sequence[ConditionCounts],
+        by: Sequence[str] = FIELDS,
+    ) -> "Comparison":
+        """Compare conditions with one; ValueError when one has no robot in common with it.
+
+        Args:
+            against, others: their cells by all of `FIELDS`: the trials that are in both are the
+                same ones whatever they are told apart by.
+            by: those of `FIELDS` that tell cells apart.
+        """
         totals: list[Difference] = []
         cells: list[Difference] = []
         left_out: dict[str, tuple[int, ...]] = {}
@@ -124,24 +141,23 @@ class Comparison:
             if not in_common(against, other):
                 raise ValueError(f"{against.name} and {other.name} have no robot in common")
             before, after = _shared(against.cells, other.cells), _shared(other.cells, against.cells)
-            found, unpaired = _compared(other.name, before, after)
-            cells += found
-            whole, without = _compared(other.name, summed(before), summed(after))
+            whole, unpaired = _compared(other.name, summed(before), summed(after))
             totals += whole
+            without: set[int] = set()
+            if by:
+                found, without = _compared(other.name, summed(before, by), summed(after, by))
+                cells += found
             missing = unpaired | without | (against.robots ^ other.robots)
             if missing:
                 left_out[other.name] = tuple(sorted(missing))
-            alone = [*against.cells, *other.cells]
-            if len(before) < len(dict.fromkeys(alone)):
-                unshared[other.name] = tuple(cell for cell in alone if cell not in before)
-        if all(cell == _whole(cell) for cell in against.cells):
-            cells = []
-        tested = [one for one in cells if not one.agree]
+            alone = [cell for cell in (*against.cells, *other.cells) if cell not in before]
+            if alone:
+                unshared[other.name] = _widest(alone, before)
         return cls(
             against,
             tuple(others),
             holm(totals),
-            holm(tested),
+            holm([one for one in cells if not one.agree]),
             tuple(one for one in cells if one.agree),
             left_out,
             unshared,
@@ -176,23 +192,39 @@ def _compared(
     return found, unpaired
 
 
-def _whole(cell: Cell) -> Cell:
-    """Return the cell of all trials of the protocol and task set."""
-    return Cell(cell.protocol, cell.task_set)
+def _told_by(cell: Cell, by: Sequence[str]) -> Cell:
+    """Return the cell that a cell is part of, told apart by fewer fields."""
+    return Cell(cell.protocol, cell.task_set, **{field: getattr(cell, field) for field in by})
 
 
-def summed(cells: Mapping[Cell, Counts]) -> dict[Cell, dict[int, tuple[int, int]]]:
-    """Return what each robot solved of all trials of a protocol and task set."""
+def _widest(alone: Sequence[Cell], shared: Iterable[Cell]) -> tuple[Cell, ...]:
+    """Return for each cell that is not in both the widest one around it with nothing in both."""
+    levels = ((), ("tool", "shape"), ("tool", "shape", "goal"), FIELDS)
+    there = {_told_by(cell, by) for cell in shared for by in levels}
+    around = ([_told_by(cell, by) for by in levels] for cell in alone)
+    return tuple(dict.fromkeys(next(c for c in wide if c not in there) for wide in around))
+
+
+def summed(
+    cells: Mapping[Cell, Counts], by: Sequence[str] = ()
+) -> dict[Cell, dict[int, tuple[int, int]]]:
+    """Return what each robot solved of a protocol and task set, told apart by some of `FIELDS`."""
     sums: dict[Cell, dict[int, tuple[int, int]]] = defaultdict(dict)
     for cell, counts in cells.items():
-        whole = sums[_whole(cell)]
+        whole = sums[_told_by(cell, by)]
         for robot, (trials, solved) in counts.items():
             before = whole.get(robot, (0, 0))
             whole[robot] = before[0] + trials, before[1] + solved
     return sums
 
 
-def sign_flip_p(differences: Iterable[int]) -> float:
+def all_tried(counts: Counts) -> list[int]:
+    """Return what those robots solved that have as many trials as any: none of them invalid."""
+    most = max(trials for trials, _ in counts.values())
+    return [solved for trials, solved in counts.values() if trials == most]
+
+
+def sign_flip_p(differences: Sequence[int]) -> float:
     """Return the two-sided p of paired differences by the exact sign-flip test (Fisher, 1935).
 
     If a condition makes no difference, each robot's two counts could as well be swapped: all signs
@@ -218,9 +250,11 @@ def holm(differences: Sequence[Difference]) -> tuple[Difference, ...]:
     """Return differences with p corrected for their number (Holm, 1979).
 
     Of all that are no differences at all, one or more is called significant in 5 % of studies.
+    Where all robots agree nothing can be significant: these are not counted, and keep their p of 1.
     """
-    corrected: dict[int, float] = {}
-    ordered = sorted(range(len(differences)), key=lambda number: differences[number].p)
+    tested = [number for number, one in enumerate(differences) if not one.agree]
+    corrected = {number: one.p for number, one in enumerate(differences)}
+    ordered = sorted(tested, key=lambda number: differences[number].p)
     least = 0.0
     for rank, number in enumerate(ordered):
         least = max(least, min(1.0, (len(ordered) - rank) * differences[number].p))

@@ -3,8 +3,9 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
-from affcli.analysis.statistics import FEWEST, deviation, mean_interval
+from affcli.analysis.statistics import FEWEST, deviation, saturates
 from affcli.core.results import Cell
 
 CERTAIN = 37.0
@@ -32,6 +33,13 @@ class Plan:
     level: float
     needed: dict[float, int | None]
     visible: float | None
+
+
+class Untold(NamedTuple):
+    """A cell of which nothing can be planned, and why, in words."""
+
+    cell: Cell
+    why: str
 
 
 def power(robots: int, difference: float, spread: float, level: float) -> float:
@@ -98,8 +106,8 @@ def plan(
     differences: Sequence[float],
     level: float,
     wanted: float,
-) -> Plan | None:
-    """Return what it takes; None where the values do not even tell the interval of their mean.
+) -> Plan | Untold:
+    """Return what it takes; why not, where the values do not even tell the interval of their mean.
 
     Args:
         cell: over which trials.
@@ -109,8 +117,10 @@ def plan(
         differences: to be seen.
         level, wanted: of p, and of the chance that it is reached.
     """
-    if mean_interval(values) is None:
-        return None
+    if len(values) < FEWEST:
+        return Untold(cell, f"fewer than {FEWEST} robots")
+    if saturates(values):
+        return Untold(cell, "too few robots differ")
     spread = deviation(values)
     if correlation is not None:
         spread *= math.sqrt(2.0 * (1.0 - correlation))

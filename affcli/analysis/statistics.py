@@ -16,7 +16,8 @@ LOW, HIGH = 0.025, 0.975
 FEWEST = 5
 """Of fewer robots no interval of a mean is given, nor of a share of trials that they share."""
 ENOUGH_OFF = 10
-"""A mean has an interval if so many robots differ from the commonest value, or half of them."""
+"""A mean has an interval if so many robots differ from the commonest value, or half of all, of an
+odd number the smaller half."""
 ENOUGH_ROBOTS = 40
 """Of fewer, the central 95 % is all of them: it is called their range, and compared with nothing.
 The range of n robots leaves out another one of their kind 2 times in n + 1."""
@@ -66,7 +67,10 @@ def deviation(values: Sequence[float]) -> float:
 
 
 def saturates(values: Sequence[float]) -> bool:
-    """Tell whether more than half of some values are the same, and fewer than ten are not."""
+    """Tell whether of some values fewer than half, and fewer than ten, differ from the commonest.
+
+    Half of an odd number is rounded down: two of five are enough to differ.
+    """
     commonest = mode(values)
     same = sum(value == commonest for value in values)
     return same > (len(values) + 1) // 2 and len(values) - same < ENOUGH_OFF

@@ -9,7 +9,7 @@ from affcli.cli.compare import Experiment, Sessions, checked_by, conditions_name
 from affcli.cli.database import opened
 from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database
 from affcli.cli.terminal import show_either
-from affcli.errors import BadInputError, UsageError
+from affcli.errors import BadInputError, UsageError, one_line
 from affcli.report.paired import power_json, power_tables
 
 DIFFERENCES = (1.0, 2.0, 4.0)
@@ -21,7 +21,7 @@ def _checked_differences(values: list[float] | None) -> list[float]:
     for value in values or ():
         if not 0.001 <= abs(value) <= LARGEST:
             raise BadInputError(f"--difference {value}: must lie in 0.001 to {LARGEST:g}")
-    return [abs(value) for value in values or DIFFERENCES]
+    return list(dict.fromkeys(abs(value) for value in values or DIFFERENCES))
 
 
 def _checked_power(power: float) -> float:
@@ -31,9 +31,9 @@ def _checked_power(power: float) -> float:
     return power
 
 
-def _checked_correlation(correlation: float) -> float:
+def _checked_correlation(correlation: float | None) -> float | None:
     """Return the correlation; BadInputError when it is none."""
-    if not -1.0 <= correlation < 1.0:
+    if correlation is not None and not -1.0 <= correlation < 1.0:
         raise BadInputError(f"--correlation {correlation}: must lie in -1 to 1, 1 left out")
     return correlation
 
@@ -56,14 +56,14 @@ def power(
         typer.Option("--power", help="The chance to see it.", metavar="P", callback=_checked_power),
     ] = 0.8,
     correlation: Annotated[
-        float,
+        float | None,
         typer.Option(
             "--correlation",
-            help="Of one session's counts with those to come.",
+            help="Of one session's counts with those to come (default: 0).",
             metavar="R",
             callback=_checked_correlation,
         ),
-    ] = 0.0,
+    ] = None,
     by: Annotated[
         str,
         typer.Option(
@@ -86,18 +86,24 @@ def power(
     with opened(database) as store:
         conditions = conditions_named(store, experiment, sessions, 1)
         if len(conditions) > 2:
-            raise UsageError("name one or two conditions with --session; compare has more than two")
-        plans, empty = lab.conditions.planned(
-            store, conditions, by, differences or DIFFERENCES, correlation, wanted
+            of = f"experiment {one_line(experiment)} has" if experiment is not None else "there are"
+            two = " ".join(f"--session {one.session.id}" for one in conditions[:2])
+            raise UsageError(f"{of} {len(conditions)} conditions; name two of the sessions: {two}")
+        if len(conditions) > 1 and correlation is not None:
+            raise UsageError(
+                "--correlation is of one session; the pairs of two tell it: leave it out"
+            )
+        plans, untold = lab.conditions.planned(
+            store, conditions, by, differences or (), correlation or 0.0, wanted
         )
     names = " and ".join(one.name for one in conditions)
     how = (
         f"from the pairs of {names}"
         if len(conditions) > 1
-        else f"from {names}, correlation {correlation:g}"
+        else f"from {names}, correlation {correlation or 0.0:g}"
     )
     show_either(
         as_json=as_json,
-        results=lambda: [power_json(plans, empty, how, wanted)],
-        tables=lambda: power_tables(plans, empty, how, wanted),
+        results=lambda: [power_json(plans, untold, how, wanted)],
+        tables=lambda: power_tables(plans, untold, how, wanted, differences or ()),
     )

@@ -1,13 +1,13 @@
 """Conditions compared robot by robot, and how many robots it would take."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple, TypeVar
 
-from affcli.analysis.paired import LEVEL, Comparison, Counts, in_common, summed
-from affcli.analysis.power import Plan, plan
+from affcli.analysis.paired import FIELDS, LEVEL, Comparison, all_tried, in_common, summed
+from affcli.analysis.power import Plan, Untold, plan
 from affcli.core.names import one_of
 from affcli.core.records import SessionInfo
-from affcli.core.results import Cell, ConditionCounts
+from affcli.core.results import ConditionCounts
 from affcli.core.specs import LIVES
 from affcli.errors import UsageError
 from affcli.lab.sessions import finished_session
@@ -82,7 +82,7 @@ def compared(
     """
     names = [condition.name for condition in conditions]
     first = names.index(one_of("condition", against, names)) if against is not None else 0
-    base, *others = (counts_of(store, one, by) for one in _first(conditions, first))
+    base, *others = (counts_of(store, one) for one in _first(conditions, first))
     for other in others:
         if not in_common(base, other):
             seeds = {base.session.spec.seed, other.session.spec.seed}
@@ -91,7 +91,7 @@ def compared(
                 f"{base.name} and {other.name} have no robot in common: they are {why}; give both "
                 "the same --seed"
             )
-    result = Comparison.of(base, others)
+    result = Comparison.of(base, others, _fields(by))
     for other in others:
         if not any(one.condition == other.name for one in result.totals):
             raise UsageError(
@@ -106,11 +106,15 @@ def _first(conditions: Sequence[Condition], first: int) -> list[Condition]:
     return [conditions[first], *conditions[:first], *conditions[first + 1 :]]
 
 
-def counts_of(store: Store, condition: Condition, by: Sequence[str]) -> ConditionCounts:
-    """Return what the robots of a condition solved, told apart by keys of `BY`."""
-    fields = [field for key in by for field in BY[key]]
-    cells = store.results.solved_by_cell(condition.session.id, fields)
+def counts_of(store: Store, condition: Condition) -> ConditionCounts:
+    """Return what the robots of a condition solved, trials told apart by all that can tell."""
+    cells = store.results.solved_by_cell(condition.session.id, FIELDS)
     return ConditionCounts(condition.name, condition.session, cells)
+
+
+def _fields(by: Sequence[str]) -> list[str]:
+    """Return the fields of `Cell` for keys of `BY`."""
+    return [field for key in by for field in BY[key]]
 
 
 def planned(
@@ -120,14 +124,16 @@ def planned(
     differences: Sequence[float],
     correlation: float,
     wanted: float,
-) -> tuple[list[Plan], list[Cell]]:
-    """Return what it takes to see differences, and the cells that tell nothing of it.
+) -> tuple[list[Plan], list[Untold]]:
+    """Return what it takes to see differences, and the cells that do not tell.
+
+    Totals and cells are each planned at the level of the first of as many (Holm's first step), for
+    so `compare` corrects them.
 
     Args:
         store: open.
         conditions: two, whose paired differences tell; or one, with a correlation.
-        by: keys of `BY`: beside all trials these cells, each at the level of the first of as many
-            (Holm's first step).
+        by: keys of `BY`: beside all trials these cells.
         differences: to be seen, in solved trials.
         correlation: of the counts of one condition with those of another, if there is but one.
         wanted: the chance to see them.
@@ -135,25 +141,27 @@ def planned(
     Raises:
         UsageError: as `compared`.
     """
+    unshared: list[Untold] = []
     if len(conditions) > 1:
-        compared(store, conditions, None, by)  # or says why they cannot be
-    counts = [counts_of(store, one, by).cells for one in conditions]
-    plans: list[Plan] = []
-    empty: list[Cell] = []
-    parts: list[list[Mapping[Cell, Counts]]] = [[summed(cells) for cells in counts]]
-    if any(BY[key] for key in by):
-        parts.append(counts)
-    for before, *after in parts:
-        level = LEVEL / (1 if before is parts[0][0] else len(before))
-        for cell, own in before.items():
-            theirs = after[0].get(cell, {}) if after else own
-            both = [robot for robot in own if own[robot][0] == theirs.get(robot, (0, 0))[0]]
-            solved = [own[robot][1] for robot in both]
-            if after:
-                solved = [theirs[r][1] - one for r, one in zip(both, solved, strict=True)]
-            found = plan(cell, solved, None if after else correlation, differences, level, wanted)
-            if found is None:
-                empty.append(cell)
-            else:
-                plans.append(found)
-    return plans, empty
+        result = compared(store, conditions, None, by)
+        parts = [
+            {one.cell: one.changes for one in part}
+            for part in (result.totals, (*result.cells, *result.same))
+        ]
+        unshared = [Untold(c, "not in both") for own in result.unshared.values() for c in own]
+    else:
+        own, fields = counts_of(store, conditions[0]).cells, _fields(by)
+        parts = [
+            {cell: tuple(all_tried(counts)) for cell, counts in summed(own, told).items()}
+            for told in ((), *([fields] if fields else []))
+        ]
+    found = [
+        plan(
+            *(cell, values, None if len(conditions) > 1 else correlation),
+            *(differences, LEVEL / len(part), wanted),
+        )
+        for part in parts
+        for cell, values in part.items()
+    ]
+    plans = [one for one in found if isinstance(one, Plan)]
+    return plans, [*(one for one in found if isinstance(one, Untold)), *unshared]

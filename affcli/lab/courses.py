@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from affcli.analysis.courses import Course, Line, course_line, swept_line
 from affcli.analysis.curves import INTERVALS, Curve
-from affcli.analysis.paired import summed
+from affcli.analysis.paired import all_tried, summed
 from affcli.config import known_settings
 from affcli.core.names import one_of
 from affcli.errors import UsageError
@@ -50,32 +50,61 @@ def curves_of(store: Store, conditions: Sequence[Condition], y: str, x: str | No
     y = one_of("measure", y, list(MEASURES))
     swept = _swept(conditions)
     x = x or (swept[0] if len(swept) == 1 else "minutes")
-    values = _setting_values(conditions, x) if x not in TIME else None
-    courses = (
-        [_courses(store, one) for one in conditions] if y != "solved" or values is None else []
-    )
-    if y != "solved" and values is None:
+    places = _sweeps(conditions, x) if x not in TIME else []
+    courses = [_courses(store, one) for one in conditions] if y != "solved" or not places else []
+    if y != "solved" and not places:
         lines = [
             course_line(one.name, list(own.values()), y, x)
             for one, own in zip(conditions, courses, strict=True)
         ]
         return Curves(lines, TIME[x], MEASURES[y])
-    places = values or [
-        math.fsum(getattr(one, x)[-1] for one in own.values()) / len(own) for own in courses
+    # Only a setting joins conditions: along time each is a mark by itself.
+    places = places or [
+        (one.name, math.fsum(getattr(course, x)[-1] for course in own.values()) / len(own))
+        for one, own in zip(conditions, courses, strict=True)
     ]
-    panels: dict[tuple[str, float], dict[float, Sequence[float]]] = defaultdict(dict)
-    for number, (condition, place) in enumerate(zip(conditions, places, strict=True)):
+    sweeps: dict[tuple[str, float, str], dict[float, Sequence[float]]] = defaultdict(dict)
+    for number, (condition, (name, place)) in enumerate(zip(conditions, places, strict=True)):
         if y == "solved":
             cells = store.results.solved_by_cell(condition.session.id, ())
             for cell, counts in summed(cells).items():
                 most = max(trials for trials, _ in counts.values())
-                solved = [float(count) for trials, count in counts.values() if trials == most]
-                panels[f"{cell.protocol}, of {most}", most][place] = solved
+                panel = f"{cell.protocol}, of {most}"
+                sweeps[panel, most, name][place] = all_tried(counts)
         else:
             ends = [getattr(one, y)[-1] for one in courses[number].values()]
-            panels["", 1.0 if y == "share" else math.inf][place] = ends
-    lines = [swept_line(panel, points, most) for (panel, most), points in panels.items()]
+            sweeps["", 1.0 if y == "share" else math.inf, name][place] = ends
+    lines = [swept_line(panel, name, own, most) for (panel, most, name), own in sweeps.items()]
     return Curves(lines, TIME.get(x) or _setting_words(x), MEASURES[y])
+
+
+def _sweeps(conditions: Sequence[Condition], x: str) -> list[tuple[str, float]]:
+    """Return for each condition the name of its line and its value of a setting.
+
+    Those that differ in nothing else share a line. Its name is empty if there is but one; in an
+    experiment it is what the names of its conditions say beside the setting.
+    """
+    sweeps: dict[tuple[str, str], list[int]] = defaultdict(list)
+    for number, one in enumerate(conditions):
+        own = one.session.spec.canonical()
+        del own["robots"]
+        own["settings"].pop(x, None)
+        beside = _name_beside(one.name, x)
+        key = json.dumps(own, sort_keys=True), "" if beside == one.name else beside
+        sweeps[key if x in _swept(conditions) else ("", "")].append(number)
+    found = {}
+    for (_, beside), numbers in sweeps.items():
+        own_conditions = [conditions[number] for number in numbers]
+        name = beside or ", ".join(one.name for one in own_conditions)
+        for number, value in zip(numbers, _setting_values(own_conditions, x), strict=True):
+            found[number] = name if len(sweeps) > 1 else "", value
+    return [found[number] for number in range(len(conditions))]
+
+
+def _name_beside(name: str, x: str) -> str:
+    """Return the name of a condition without the value of a swept setting."""
+    said = (f"{x}=", f"{x.rpartition('.')[2]}=")
+    return ", ".join(word for word in name.split(", ") if not word.startswith(said))
 
 
 def _swept(conditions: Sequence[Condition]) -> list[str]:

@@ -5,9 +5,9 @@ from typing import Any
 
 from rich.text import Text
 
-from affcli.analysis.paired import Comparison, Difference
+from affcli.analysis.paired import LEVEL, Comparison, Difference
 from affcli.analysis.paper import TASK_SET
-from affcli.analysis.power import Plan
+from affcli.analysis.power import Plan, Untold
 from affcli.core.results import Cell, ConditionCounts
 from affcli.errors import one_line
 from affcli.report.sheet import Sheet
@@ -52,10 +52,15 @@ def _table(
     headings, words = cell_words(cells)
     robots = many(max(one.robots for one in differences), "pair") + " of robots"
     if label:
-        headings, words = (label,), [(total_words(one, cells),) for one in differences]
+        headings, words = (label,), [(total_words(cell, cells),) for cell in cells]
     each = sorted({one.trials for one in differences})
     of = f"{each[0]:g}" if len(each) == 1 else f"{each[0]:g} to {each[-1]:g}"
-    whole = f"{other.name} against {result.against.name}: {robots}"
+    whole = f"{other.name} against {result.against.name}: {robots}, "
+    if label and len(each) > 1:
+        parts = (f"{w} of {one.trials:g}" for (w,), one in zip(words, differences, strict=True))
+        whole += ", ".join(parts) + " trials"
+    else:
+        whole += f"of {of} trials"
     table = Sheet(
         (*headings, result.against.name, other.name, "change", "95 % interval", "d", "+/-", "p"),
         title=whole if label else f"Cells of {of} trials",
@@ -94,7 +99,7 @@ def _conditions_table(result: Comparison) -> Sheet:
     seed = result.against.session.spec.seed
     left_out = bool(result.left_out)
     columns = ("condition", "robots", "settings and parts", *(("left out",) if left_out else ()))
-    tests = [len(result.totals)] + [len(result.cells)] * bool(result.cells)
+    tests = [sum(not one.agree for one in result.totals)] + [len(result.cells)] * bool(result.cells)
     notes = [note.format(tests=" and ".join(map(str, tests))) for note in METHOD]
     notes += ["left out: not in both, or not with as many trials"] * left_out
     for name, cells in result.unshared.items():
@@ -131,10 +136,10 @@ def held_words(cell: Cell) -> str:
     return cell.tool if cell.shape in ("", cell.tool) else f"{cell.tool} as {cell.shape}"
 
 
-def total_words(one: Difference, cells: Sequence[Cell]) -> str:
-    """Return a protocol with its number of trials, and the task set where there are several."""
-    tasks = f", {one.cell.task_set}" if len({cell.task_set for cell in cells}) > 1 else ""
-    return one_line(f"{one.cell.protocol}{tasks}, of {one.trials:g}", 60)
+def total_words(cell: Cell, cells: Sequence[Cell]) -> str:
+    """Return a protocol, and the task set where there are several."""
+    tasks = f", {cell.task_set}" if len({one.task_set for one in cells}) > 1 else ""
+    return one_line(f"{cell.protocol}{tasks}", 60)
 
 
 def whole_words(cell: Cell) -> str:
@@ -155,7 +160,9 @@ def interval_words(one: Difference) -> str:
 
 
 def p_words(one: Difference) -> Text:
-    """Return a corrected p, marked where it is significant."""
+    """Return a corrected p, marked where it is significant; - where there was nothing to test."""
+    if one.agree:
+        return Text("- ")
     words = "<0.001" if one.corrected < 0.001 else f"{one.corrected:.3f}"
     return Text(f"{words}*", style="bold") if one.significant else Text(f"{words} ")
 
@@ -178,8 +185,7 @@ def comparison_rows(result: Comparison) -> list[tuple[Any, ...]]:
             *(one.condition, result.against.name, *one.cell, one.robots, one.trials),
             *(one.before, one.after, one.mean, *(one.interval or (None, None)), one.effect),
             *(one.better, one.worse, *one.better_share),
-            *((None, None, None) if one in result.same else (one.p, one.corrected)),
-            *(() if one in result.same else (int(one.significant),)),
+            *((None, None, None) if one.agree else (one.p, one.corrected, int(one.significant))),
         )
         for one in (*result.totals, *result.cells, *result.same)
     ]
@@ -188,6 +194,8 @@ def comparison_rows(result: Comparison) -> list[tuple[Any, ...]]:
 def comparison_json(result: Comparison) -> dict[str, Any]:
     """Return a comparison as JSON types."""
     rows = [dict(zip(COLUMNS, row, strict=True)) for row in comparison_rows(result)]
+    for row in rows:
+        row["significant"] = None if row["significant"] is None else bool(row["significant"])
     totals, cells = len(result.totals), len(result.totals) + len(result.cells)
     return {
         "against": _condition_json(result.against),
@@ -216,17 +224,21 @@ def _condition_json(one: ConditionCounts) -> dict[str, Any]:
 
 
 def power_tables(
-    plans: Sequence[Plan], empty: Sequence[Cell], how: str, wanted: float
+    plans: Sequence[Plan],
+    untold: Sequence[Untold],
+    how: str,
+    wanted: float,
+    differences: Sequence[float],
 ) -> list[Sheet]:
     """Return how many robots it takes to see each difference.
 
     Args:
         plans: what it takes.
-        empty: cells that tell nothing of it.
+        untold: cells that tell nothing of it.
         how: from what it is known, in words.
         wanted: the chance to see a difference.
+        differences: to be seen, in solved trials.
     """
-    differences = list(plans[0].needed) if plans else []
     columns = ("trials", "deviation", *(f"of {one:g}" for one in differences), "seen by as many")
     table = Sheet(
         columns,
@@ -234,29 +246,32 @@ def power_tables(
         title="Robots needed to see a difference of so many solved trials "
         f"({100 * wanted:g} % power)",
         caption=f"{how}; deviation: standard deviation of the paired differences; seen by as many: "
-        "the smallest difference that as many robots as there are would show; two-sided at 5 %"
-        + _corrected_words(plans),
+        "the smallest difference that as many robots as there are would show" + _level_words(plans),
     )
     for one in plans:
         needed = ["-" if n is None else f"{n:,}" for n in one.needed.values()]
         visible = "-" if one.visible is None else fixed(one.visible, 2)
         table.add(whole_words(one.cell), fixed(one.spread, 2), *needed, visible)
-    if empty:
-        names = "; ".join(map(whole_words, empty))
-        table.caption += f"\nnot told, for too few robots differ in them: {names}"
+    for why in dict.fromkeys(one.why for one in untold):
+        names = "; ".join(whole_words(one.cell) for one in untold if one.why == why)
+        table.caption += f"\nnot told, {why}: {names}"
     return [table]
 
 
-def _corrected_words(plans: Sequence[Plan]) -> str:
-    """Return at which level the cells are, where there are some."""
-    levels = sorted({one.level for one in plans})
-    return (
-        "" if len(levels) < 2 else f", of a cell at {100 * levels[0]:.2g} % (the first of Holm's)"
-    )
+def _level_words(plans: Sequence[Plan]) -> str:
+    """Return at which level totals and cells are planned, as far as there are some."""
+    levels = {
+        f"{kind} at {100 * one.level:.2g} %": one.level < LEVEL
+        for kind, told in (("all trials", False), ("a cell", True))
+        for one in plans
+        if any(one.cell[2:]) == told
+    }
+    first = " (of as many as there are, Holm's first)" if any(levels.values()) else ""
+    return f"; two-sided: {', '.join(levels)}{first}" if levels else ""
 
 
 def power_json(
-    plans: Sequence[Plan], empty: Sequence[Cell], how: str, wanted: float
+    plans: Sequence[Plan], untold: Sequence[Untold], how: str, wanted: float
 ) -> dict[str, Any]:
     """Return what `power_tables` shows as JSON types."""
     return {
@@ -273,5 +288,5 @@ def power_json(
             }
             for one in plans
         ],
-        "same": [one._asdict() for one in empty],
+        "not_told": [{**one.cell._asdict(), "why": one.why} for one in untold],
     }

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from affcli.analysis.paired import Comparison, Difference, holm, sign_flip_p, summed
+from affcli.analysis.paired import Comparison, Difference, all_tried, holm, sign_flip_p
 from affcli.core.results import Cell, ConditionCounts
 from affcli.core.specs import Protocol
 from tests.report.hand_made import TASK_SET, session_of
@@ -109,7 +109,7 @@ def test_a_difference_has_student_s_interval_where_it_holds() -> None:
 @given(st.lists(st.floats(0.0, 1.0), min_size=1, max_size=30))
 def test_corrected_p_are_those_of_holm(ps: list[float]) -> None:
     """Each the largest of (m - k + 1) p(k) over those that are no larger, at most 1."""
-    found = holm([replace(difference([(1, 1)]), p=p) for p in ps])
+    found = holm([replace(difference([(1, 2)]), p=p) for p in ps])
     for one in found:
         steps = [(len(ps) - rank) * p for rank, p in enumerate(sorted(ps)) if p <= one.p]
         assert one.corrected == pytest.approx(min(1.0, max(steps)))
@@ -129,6 +129,13 @@ def test_totals_are_sums_by_protocol_and_each_table_is_corrected_by_itself() -> 
     for table in (result.totals, result.cells):
         assert min(one.corrected for one in table) == 2 * min(one.p for one in table)
     assert result.left_out == {}
+
+
+def test_totals_in_which_all_robots_agree_take_nothing_from_the_others() -> None:
+    base = condition("base", [1] * 12, [2] * 12, [4] * 12)
+    reach, broken = Comparison.of(base, [condition("b", [3] * 12, [2] * 12, [4] * 12)]).totals
+    assert reach.corrected == reach.p == 2 * 0.5**12
+    assert (broken.agree, broken.corrected) == (True, 1.0)
 
 
 def test_robots_pair_by_number_and_those_that_do_not_are_said() -> None:
@@ -151,7 +158,8 @@ def test_without_a_robot_in_common_nothing_is_compared(other: ConditionCounts) -
 def test_cells_that_only_one_condition_has_are_named_and_not_summed() -> None:
     base, other = condition("base", [1] * 6, [2] * 6), condition("other", [3] * 6)
     result = Comparison.of(base, [other, condition("third", [1] * 6, [2] * 6, [4] * 6)])
-    assert result.unshared == {"other": (HOOK,), "third": (BROKEN,)}
+    hook, broken = HOOK._replace(goal=""), Cell(BROKEN.protocol, TASK_SET)
+    assert result.unshared == {"other": (hook,), "third": (broken,)}
     assert [(d.condition, d.cell, d.trials, d.mean) for d in result.totals] == [
         ("other", Cell(REACH, TASK_SET), 4.0, 2.0),
         ("third", Cell(REACH, TASK_SET), 8.0, 0.0),
@@ -159,9 +167,18 @@ def test_cells_that_only_one_condition_has_are_named_and_not_summed() -> None:
     assert result.left_out == {}
 
 
-def test_by_protocol_there_are_totals_alone() -> None:
-    base, other = condition("base", [1, 2, 3]), condition("other", [2, 2, 3])
-    whole = [replace(one, cells=summed(one.cells)) for one in (base, other)]
-    result = Comparison.of(whole[0], whole[1:])
-    assert (result.cells, result.same) == ((), ())
-    assert result.totals == Comparison.of(base, [other]).totals
+@pytest.mark.parametrize("by", [(), ("tool", "shape"), ("goal",), ("tool", "shape", "goal")])
+def test_what_tells_cells_apart_does_not_change_the_totals(by: tuple[str, ...]) -> None:
+    """A tool, and a goal of the other, that one condition alone has are in no total."""
+    again = STICK._replace(goal="2")
+    base, other = condition("base", [1, 2, 3], [4, 4, 4]), condition("other", [2, 2, 3])
+    base = replace(base, cells={**base.cells, again: dict.fromkeys(range(3), (4, 4))})
+    result = Comparison.of(base, [other], by)
+    (total,) = result.totals
+    assert (total.trials, total.before, total.changes) == (4.0, 2.0, (0, 0, 1))
+    assert [one.trials for one in (*result.cells, *result.same)] == [4.0] * bool(by)
+    assert result.unshared == {"other": (HOOK._replace(goal=""), again)}
+
+
+def test_robots_with_an_invalid_trial_have_not_tried_all() -> None:
+    assert all_tried({0: (4, 3), 1: (3, 3), 2: (4, 0)}) == [3, 0]

@@ -9,6 +9,8 @@ from scipy import stats
 
 from affcli.analysis.power import (
     MOST,
+    Plan,
+    Untold,
     least_robots,
     plan,
     power,
@@ -66,9 +68,21 @@ def test_counts_of_one_condition_are_taken_for_those_of_another() -> None:
     paired = plan(Cell("p", "t"), counts, None, [2.0], 0.05, 0.8)
     alone = plan(Cell("p", "t"), counts, 0.0, [2.0], 0.05, 0.8)
     together = plan(Cell("p", "t"), counts, 0.5, [2.0], 0.05, 0.8)
-    assert paired is not None
-    assert alone is not None
-    assert together is not None
+    assert isinstance(paired, Plan)
+    assert isinstance(alone, Plan)
+    assert isinstance(together, Plan)
     assert alone.spread == pytest.approx(paired.spread * math.sqrt(2.0))
     assert together.spread == pytest.approx(paired.spread)
-    assert plan(Cell("p", "t"), [4] * 30 + [3], 0.0, [1.0], 0.05, 0.8) is None
+
+
+@pytest.mark.parametrize(
+    ("values", "why"),
+    [
+        ([1, 2, 3, 4], "fewer than 5 robots"),
+        ([4] * 4, "fewer than 5 robots"),
+        ([4] * 30 + [3], "too few robots differ"),
+    ],
+)
+def test_what_tells_nothing_says_why(values: list[int], why: str) -> None:
+    cell = Cell("p", "t")
+    assert plan(cell, values, 0.0, [1.0], 0.05, 0.8) == Untold(cell, why)

@@ -94,11 +94,29 @@ def test_tables_for_a_paper(name: str, holds: str, database: Path, tmp_path: Pat
 def test_power_says_how_many_robots(database: Path) -> None:
     ended = done("power", *TWO, "--difference", "0.5", "--difference", "1", "--db", database)
     out = " ".join(ended.out.split())
-    assert "extension of reach 0.53 12 6" in out
-    assert "not told, for too few robots differ in them: tool adaptation" in out
+    assert "extension of reach 0.53 14 7" in out
+    assert "two-sided: all trials at 2.5 % (of as many as there are, Holm's first)" in out
+    assert "not told, too few robots differ: tool adaptation" in out
     one = done("power", "--session", "1", "--correlation", "0.5", "--json", "--db", database).result
-    assert one["plans"][0]["needed"][0] == {"difference": 1.0, "robots": 6}
+    assert one["plans"][0]["needed"][0] == {"difference": 1.0, "robots": 7}
     assert one["known_from"] == "from session 1, correlation 0.5"
+    (untold,) = one["not_told"]
+    assert (untold["protocol"], untold["why"]) == ("tool adaptation", "too few robots differ")
+
+
+def test_without_a_plan_the_table_has_its_columns(tmp_path: Path) -> None:
+    with open_store(tmp_path / "four.db", create=True, write=True) as store:
+        stored_conditions(store, 3, conditions=2)
+    out = done("power", *TWO, "--difference", "2", "--db", tmp_path / "four.db").out
+    assert "trials  deviation  of 2  seen by as many" in out
+    assert "not told, fewer than 5 robots: extension of reach; tool adaptation" in out
+
+
+def test_in_json_significant_is_true_or_false_and_null_without_a_test(database: Path) -> None:
+    value = done("compare", *TWO, "--json", "--db", database).result
+    rows = [*value["totals"], *value["cells"], *value["same"]]
+    assert [row["significant"] for row in rows] == [False, None, False, None, None]
+    assert [row["p"] is None for row in rows] == [False, True, False, True, True]
 
 
 @pytest.mark.parametrize(
@@ -134,7 +152,8 @@ REFUSED: list[tuple[int, tuple[str, ...], str]] = [
     (4, ("compare", *TWO, "--out", "a.docx"), "a.docx: name it *.md or *.tex or *.csv, or give"),
     (2, ("compare", *TWO, "--json", "--format", "csv"), "--json writes to stdout: leave out"),
     (2, ("power",), "or sessions, as in --session 1 (finished"),
-    (2, ("power", *TWO, "--session", "3"), "name one or two conditions with --session"),
+    (2, ("power", *TWO, "--session", "3"), "there are 3 conditions; name two of the sessions: --s"),
+    (2, ("power", *TWO, "--correlation", "0"), "--correlation is of one session; the pairs of two"),
     (4, ("power", *TWO, "--difference", "0"), "--difference 0.0: must lie in 0.001 to 1000"),
     (4, ("power", *TWO, "--difference", "nan"), "--difference nan: must lie in"),
     (4, ("power", *TWO, "--power", "1"), "--power 1.0: must lie in 0.1 to 0.999"),

@@ -3,6 +3,8 @@
 import pytest
 import sqlalchemy as sa
 
+from affcli.analysis.paired import summed
+from affcli.analysis.power import Untold
 from affcli.core.results import Cell
 from affcli.errors import UsageError
 from affcli.lab.conditions import compared, counts_of, planned, sessions_named
@@ -21,17 +23,16 @@ BROKEN = Cell(ADAPTATION, TASKS, "t-hook", "l-hook", "1")
 
 def test_what_each_robot_solved_of_each_cell(store: Store) -> None:
     (first, *_) = sessions_named(store, stored_conditions(store))
-    counts = counts_of(store, first, ("tool", "goal"))
-    assert list(counts.cells) == [STICK, HOOK, BROKEN]
-    assert counts.cells[STICK] == {r: (2, 1 if r < SECOND else 2) for r in range(8)}
-    assert counts.cells[HOOK] == dict.fromkeys(range(8), (2, 1))
-    assert counts.cells[BROKEN] == dict.fromkeys(range(8), (1, 1))
-    by_start = counts_of(store, first, ("start",)).cells
+    counts = counts_of(store, first).cells
+    assert counts[STICK._replace(start="2")] == {r: (1, int(r >= SECOND)) for r in range(8)}
+    by_goal = summed(counts, ("tool", "shape", "goal"))
+    assert list(by_goal) == [STICK, HOOK, BROKEN]
+    assert by_goal[STICK] == {r: (2, 1 if r < SECOND else 2) for r in range(8)}
+    assert by_goal[HOOK] == dict.fromkeys(range(8), (2, 1))
+    assert by_goal[BROKEN] == dict.fromkeys(range(8), (1, 1))
+    by_start = summed(counts, ("start",))
     assert by_start[ALL._replace(start="2")] == {r: (2, int(r >= SECOND)) for r in range(8)}
-    assert list(counts_of(store, first, ("task", "protocol")).cells) == [
-        ALL,
-        Cell(ADAPTATION, TASKS),
-    ]
+    assert list(summed(counts)) == [ALL, Cell(ADAPTATION, TASKS)]
 
 
 def test_robots_of_any_number_are_counted(store: Store) -> None:
@@ -76,7 +77,9 @@ def test_a_robot_with_an_invalid_trial_is_left_out_where_it_was(store: Store) ->
     with store.database.writing() as connection:
         invalid = sa.update(trial).where(trial.c.id == 1).values(outcome="invalid")
         connection.execute(invalid)
-    counts = counts_of(store, conditions[0], ("tool",)).cells[STICK._replace(goal="")]
+    counts = summed(counts_of(store, conditions[0]).cells, ("tool", "shape"))[
+        STICK._replace(goal="")
+    ]
     assert (counts[0], counts[1]) == ((1, 0), (2, 1))
     result = compared(store, conditions, None, ("tool",))
     assert result.left_out == {"session 2": (0, 8)}
@@ -107,13 +110,30 @@ def test_robots_needed_are_told_from_pairs_or_from_one_condition(store: Store) -
     conditions = sessions_named(store, stored_conditions(store))
     plans, untold = planned(store, conditions[:2], ("tool",), (1.0,), 0.0, 0.8)
     assert [(one.cell, one.robots) for one in plans] == [(ALL, 8), (STICK._replace(goal=""), 8)]
-    assert [one.level for one in plans] == [0.05, 0.05 / 3]
-    assert Cell(ADAPTATION, TASKS) in untold
+    assert [one.level for one in plans] == [0.05 / 2, 0.05 / 3]
+    assert Untold(Cell(ADAPTATION, TASKS), "too few robots differ") in untold
     assert plans[0].spread == pytest.approx(0.5345, abs=1e-4)
     (alone, *_), _ = planned(store, conditions[:1], ("protocol",), (1.0,), 0.5, 0.8)
     assert alone.spread == pytest.approx(0.5345, abs=1e-4)
     (apart, *_), _ = planned(store, conditions[:1], ("protocol",), (1.0,), 0.0, 0.8)
     assert (apart.needed[1.0] or 0) > (alone.needed[1.0] or 0)
+
+
+def test_plans_are_of_the_trials_that_both_conditions_have(store: Store) -> None:
+    conditions = sessions_named(store, stored_conditions(store, conditions=2))
+    plans, _ = planned(store, conditions, ("start",), (1.0,), 0.0, 0.8)
+    with store.database.writing() as connection:
+        of_one = (trial.c.session_id == conditions[0].session.id, trial.c.tool == "t-hook")
+        connection.execute(sa.update(trial).where(*of_one).values(tool="l-stick"))
+    after, untold = planned(store, conditions, ("start",), (1.0,), 0.0, 0.8)
+    (total, _), (before, _) = after, plans
+    assert (total.cell, total.spread) == (before.cell, before.spread)  # the hook tells nothing
+    apart = [one.cell.tool for one in untold if one.why == "not in both"]
+    assert apart == ["l-stick", "", "t-hook"]
+    four = sessions_named(store, stored_conditions(store, 4, conditions=2))
+    assert planned(store, four, (), (1.0,), 0.0, 0.8)[0] == []
+    whys = {one.why for one in planned(store, four, (), (1.0,), 0.0, 0.8)[1]}
+    assert whys == {"fewer than 5 robots"}
 
 
 def test_a_setting_that_differs_is_the_axis_of_the_curve(store: Store) -> None:
@@ -141,8 +161,23 @@ def test_courses_follow_robots_over_minutes_or_rows(store: Store) -> None:
                 assert xs == sorted(xs)
                 assert len(xs) > 10
                 assert all(0.0 <= p.mean <= (1.0 if y == "share" else 20.0) for p in line.points)
-    (solved, _) = curves_of(store, conditions[:1], "solved", "rows").lines
-    assert [point.x for point in solved.points] == [20.0]
+    lines = curves_of(store, conditions, "solved", "rows").lines
+    assert [line.name for line in lines[::2]] == ["session 1", "session 2", "session 3"]
+    assert [[point.x for point in line.points] for line in lines] == [[20.0]] * 6
+
+
+def test_a_grid_has_a_line_for_each_condition_beside_the_sweep(store: Store) -> None:
+    (one, two, three) = sessions_named(store, stored_conditions(store))
+    x = "sensor.position_noise"
+    grid = [
+        condition._replace(name=f"{name}position_noise={value}")
+        for name, value, condition in (("a, ", 1, one), ("a, ", 2, two), ("b, ", 2, two))
+    ]
+    lines = curves_of(store, grid, "solved", x).lines
+    found = [(line.name, [point.x for point in line.points]) for line in lines[::2]]
+    assert found == [("a", [0.008, 0.06]), ("b", [0.06])]
+    with pytest.raises(UsageError, match=f"{x} is .* in more than one condition"):
+        curves_of(store, [one, three, three._replace(name="again")], "solved", x)
 
 
 def test_a_value_that_several_conditions_have_is_named(

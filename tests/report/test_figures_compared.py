@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
 from affcli.analysis.courses import Course, Line, Point, course_line, swept_line
@@ -22,6 +23,7 @@ from tests.report.drawn import drawn
 BASE = condition("paper", [1] * 12, [2, 3] * 6, [4] * 12)
 OTHER = condition("two moves", [3] * 11 + [1], [3, 2] * 6, [4] * 12)
 THIRD = condition("three moves", [1] * 11 + [0], [2, 3] * 6, [3] * 12)
+OTHER_HOOK = condition("hooks", [1] * 12, [3, 2] * 6, [3] * 12)
 ONE = Comparison.of(BASE, [OTHER])
 TWO = Comparison.of(BASE, [OTHER, THIRD])
 
@@ -68,6 +70,25 @@ def test_several_conditions_differ_in_mark_and_colour() -> None:
     assert encoded(figure, ".png") == encoded(compare_figure(TWO), ".png")
 
 
+def test_rows_are_in_the_order_of_the_paper_whichever_condition_differs_first() -> None:
+    changed = condition("stick", [2] * 12, [2, 3] * 6, [4] * 12)
+    figure = compare_figure(Comparison.of(BASE, [OTHER_HOOK, changed]))
+    labels = [label.get_text() for label in figure.axes[-1].get_yticklabels()]
+    assert labels == ["Stick, goal 1", "T-hook, goal 1", "T-hook as L-hook, goal 1"]
+
+
+def test_marks_of_the_key_are_hollow_but_for_the_significant() -> None:
+    (key,) = compare_figure(TWO).legends
+    fills = {
+        text.get_text(): handle.get_markerfacecolor()
+        for text, handle in zip(key.get_texts(), key.legend_handles, strict=True)
+        if isinstance(handle, Line2D) and handle.get_marker() != "None"
+    }
+    filled = [words for words, fill in fills.items() if fill != "white"]
+    assert filled == ["significant, corrected"]
+    assert {"two moves", "three moves"} <= fills.keys()
+
+
 def course(rows: float) -> Course:
     minutes = [0.0, 1.0, 2.0, 3.0]
     return Course(minutes, [rows * m for m in minutes], [np.nan, *[rows / 10] * 3])
@@ -86,7 +107,8 @@ def test_courses_are_lines_with_bands_and_begin_where_all_are_known() -> None:
 
 
 def test_a_sweep_is_points_with_bars_on_an_axis_that_fits() -> None:
-    line = swept_line("of 80", {0.25: [60, 62, 64, 66, 70], 0.008: [69] * 5, 0.06: [68, 69]}, 80)
+    values = {0.25: [60, 62, 64, 66, 70], 0.008: [69] * 5, 0.06: [68, 69]}
+    line = swept_line("of 80", "", values, 80)
     assert [(point.x, point.robots) for point in line.points] == [(0.008, 5), (0.06, 2), (0.25, 5)]
     assert [point.interval is None for point in line.points] == [True, True, False]
     figure = curve_figure([line, replace(line, panel="of 16")], "noise (in)", "solved")
@@ -97,6 +119,28 @@ def test_a_sweep_is_points_with_bars_on_an_axis_that_fits() -> None:
     assert "mean of the robots" in texts(alone)
 
 
+def test_conditions_along_time_are_marks_that_nothing_joins() -> None:
+    lines = [
+        swept_line("", name, {10.0: [float(n), *range(6)]}, 80.0) for n, name in enumerate("ab")
+    ]
+    (axes,) = curve_figure(lines, "minutes", "solved").axes
+    marks = [line for line in axes.lines if line.get_marker() in {"o", "s"}]
+    assert [np.size(line.get_xdata()) for line in marks] == [1, 1]
+    assert {line.get_linestyle() for line in marks} == {"None"}
+    assert len({line.get_color() for line in marks}) == 2
+    several = [replace(line, panel=panel) for panel in ("x", "y") for line in lines]
+    figure = curve_figure(several, "minutes", "solved")
+    words = [text.get_text() for text in figure.findobj(Text)]
+    assert (words.count("a"), words.count("b")) == (1, 1)
+
+
+def test_sweeps_of_several_conditions_are_lines_of_their_own() -> None:
+    lines = [swept_line("", name, {1.0: [1.0], 2.0: [2.0]}, 80.0) for name in "ab"]
+    (axes,) = curve_figure(lines, "noise", "solved").axes
+    assert [line.get_linestyle() for line in axes.lines] == ["-", "-"]
+    assert len({line.get_marker() for line in axes.lines}) == 2
+
+
 @pytest.mark.parametrize("columns", [80, 40])
 def test_the_tables_fit_the_screen(columns: int) -> None:
     text = drawn(comparison_tables(TWO), columns)
@@ -104,7 +148,19 @@ def test_the_tables_fit_the_screen(columns: int) -> None:
     words = " ".join(text.split())
     for name in ("two moves", "three moves"):
         assert f"{name} against paper: 12 pairs of robots" in words
-    assert "corrected by Holm in each table (4 and 4 tests)" in words
+    assert "corrected by Holm in each table (3 and 4 tests)" in words
+
+
+def test_a_total_stands_in_one_line_of_80_columns() -> None:
+    text = drawn(comparison_tables(Comparison.of(BASE, [replace(OTHER, name="other")])), 80)
+    title = "12 pairs of robots, extension of reach of 8, tool adaptation of 4 trials"
+    assert title in " ".join(text.split())
+    (row,) = (line for line in text.splitlines() if line.startswith("extension of reach "))
+    assert row.split()[3:6] == ["3.50", "5.33", "+1.83"]
+    alone = replace(BASE, cells=dict(list(BASE.cells.items())[:1]))
+    assert "12 pairs of robots, of 4 trials" in drawn(
+        comparison_tables(Comparison.of(alone, [OTHER])), 80
+    )
 
 
 def test_marks_of_markdown_and_latex_are_escaped() -> None:

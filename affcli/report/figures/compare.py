@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from affcli.analysis.paired import Comparison, Difference
+from affcli.analysis.paper import in_papers_order
 from affcli.core.results import Cell
 from affcli.report.figures.canvas import (
     BLUE,
@@ -25,6 +26,7 @@ from affcli.report.figures.canvas import (
 from affcli.report.figures.key import draw_key
 from affcli.report.figures.words import tool_words
 from affcli.report.paired import whole_words
+from affcli.report.words import in_order
 
 LOOKS = ((INK, "o"), (VERMILION, "s"), (BLUE, "^"), (GREEN, "D"), (PURPLE, "v"))
 """Colour and mark of each condition: told apart without colour too."""
@@ -61,9 +63,14 @@ def compare_figure(result: Comparison, width: float | None = None) -> Figure:
     return figure
 
 
-def _rows(part: Sequence[Difference]) -> list[Any]:
-    """Return the cells of a panel, in order."""
-    return list(dict.fromkeys(one.cell for one in part))
+def _rows(part: Sequence[Difference]) -> list[Cell]:
+    """Return the cells of a panel: by protocol, tool in the paper's order, goal and start."""
+    cells = list(dict.fromkeys(one.cell for one in part))
+    protocols = list(dict.fromkeys(cell.protocol for cell in cells))
+    goals, starts = in_order(c.goal for c in cells), in_order(c.start for c in cells)
+    cells.sort(key=lambda cell: (goals.index(cell.goal), starts.index(cell.start)))
+    tools = in_papers_order(cells, lambda cell: cell.tool)
+    return sorted(tools, key=lambda cell: protocols.index(cell.protocol))
 
 
 def _cell_words(cell: Cell) -> str:
@@ -115,7 +122,7 @@ def _key(result: Comparison, names: Sequence[str]) -> list[tuple[Artist, str]]:
     entries: list[tuple[Artist, str]] = []
     if len(names) > 1:
         entries += [
-            (Line2D([], [], color=color, marker=mark, **dot), name)
+            (Line2D([], [], color=color, marker=mark, markerfacecolor="white", **dot), name)
             for name, (color, mark) in zip(names, LOOKS, strict=False)
         ]
     hollow = Line2D([], [], color=INK, marker="o", markerfacecolor="white", **dot)
