@@ -175,7 +175,12 @@ RUNS = Group(
             "List the learning runs, with their notes.",
             "affcli runs list",
         ),
-        Command("show", "runs:show_run", "Show one learning run in full.", "affcli runs show 1"),
+        Command(
+            "show",
+            "runs:show_run",
+            "Show one learning run in full, also one of which not all was kept.",
+            "affcli runs show 1",
+        ),
         Command(
             "note",
             "runs:note_run",

@@ -28,6 +28,9 @@ WRITERS: tuple[Args, ...] = (
 )
 """What writes into a database, or a copy of it; `db upgrade` is given one of an older schema."""
 WRITING = {"learn", "solve", "break-tool", "reproduce", "db upgrade", "db backup"}
+WRITING |= {"experiment", "runs note", "runs delete"}
+OF_TWO = {"compare", "figure compare"}
+"""What needs two conditions of one seed, which the database under attack has not."""
 MOST_READ = {"figure", "report", "replay"}
 """Half of what is drawn of all commands begins so: it reads most of a database."""
 BY_WORD = {"--robots": ("1", "2"), "--workers": ("1",), "--speed": ("1000",)}
@@ -142,6 +145,8 @@ NEED: dict[str, Args] = {
     "verify": ("--rows", "3"),
     "camera view": ("--trial", "1", "--step", "1", "--out", "new.png", "--force"),
     "runs show": ("1",),
+    "power": ("--session", "3"),
+    "figure curve": ("--session", "3", "--out", "new.svg", "--force"),
     "runs note": ("1", "seen"),
     "runs delete": ("2", "--yes"),
     "experiment": ("two.toml", "--workers", "1"),

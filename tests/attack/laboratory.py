@@ -12,7 +12,7 @@ from threading import Thread
 
 import numpy as np
 
-from tests.attack.attacks import WRITING, Args, Attack, drawn, has_database, named, plainly
+from tests.attack.attacks import OF_TWO, WRITING, Args, Attack, drawn, has_database, named, plainly
 from tests.attack.checks import (
     LASTING,
     check_end,
@@ -200,6 +200,6 @@ def readers() -> tuple[list[Args], list[Args]]:
     quick: list[Args] = []
     slow = [*MORE]
     for command in named():
-        if has_database(command) and command.name not in WRITING:
+        if has_database(command) and command.name not in WRITING | OF_TWO:
             (quick if command.name in QUICK else slow).append(plainly(command))
     return quick, slow

@@ -258,7 +258,7 @@ def test_an_option_that_would_be_ignored_is_a_usage_error(
 def test_what_is_no_number_is_a_usage_error(folder: Path) -> None:
     for option in ("--spacing", "--turn", "--sensor-width", "--seed"):
         line = refused(2, "camera", "calibrate", "pattern.png", option, "much", cwd=folder)
-        assert f"{option} " in line
+        assert option in line
     assert "'IMAGE'" in refused(2, "camera", "locate", cwd=folder)
     assert "'--calibration'" in refused(2, "camera", "locate", "table.png", cwd=folder)
 

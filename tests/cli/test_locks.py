@@ -42,7 +42,8 @@ def hurried(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_every_command_waits_says_for_whom_and_gives_up_after_what_it_says(
     command: Command, learned: Path
 ) -> None:
-    (learned.parent / "two.toml").write_text(EXPERIMENT)
+    if command.name == "experiment":
+        (learned.parent / "two.toml").write_text(EXPERIMENT)
     ended = affcli(*plainly(command), "--db", learned, cwd=learned.parent)
     assert ended.code == 3, ended
     lines = ended.err.splitlines()
@@ -54,7 +55,7 @@ def test_every_command_waits_says_for_whom_and_gives_up_after_what_it_says(
     else:
         assert said in one_printable_line("\n".join(lines) + "\n")
         assert ended.out == ""
-    assert names_in(learned.parent) == [learned.name]
+    assert set(names_in(learned.parent)) <= {learned.name, "two.toml"}
 
 
 @pytest.mark.fault(40)
