@@ -19,7 +19,7 @@ CHANGING = {
     "affordance": {"times_used", "times_successful"},
     "learning_run": {
         *("status", "checkpoint", "finished_at", "behaviors", "rows", "resets", "redraws"),
-        *("robot_seconds", "calibration"),
+        *("robot_seconds", "calibration", "note"),
     },
     "session": {"status", "finished_at"},
 }

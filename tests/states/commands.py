@@ -49,12 +49,14 @@ class Writing:
         before: commands that run first.
         revision: of the database that is there; none if empty.
         anew: done again it does not go on where it was but begins anew, from what is saved.
+        once: what it says when it was killed after it had done what can be done once.
     """
 
     line: str
     before: tuple[str, ...] = ()
     revision: str = ""
     anew: bool = False
+    once: str = ""
 
     @property
     def args(self) -> list[str]:
@@ -75,7 +77,7 @@ WRITING = {
     "reproduce": Writing("reproduce --robots 2 --workers 1 --config settings.toml"),
     "experiment": Writing(LIVED),
     "runs note": Writing("runs note 1 seen", (LEARN,)),
-    "runs delete": Writing("runs delete 2 --yes", USED),
+    "runs delete": Writing("runs delete 2 --yes", USED, once="it was deleted"),
     "db merge": Writing(f"db merge {OTHER} --into {DATABASE}", (LIVED,)),
     "db upgrade": Writing("db upgrade", revision="0003"),
     "db upgrade, from the first": Writing("db upgrade", revision="0001"),

@@ -71,7 +71,9 @@ def test_a_command_killed_at_a_write_leaves_a_known_state_and_goes_on(
             read += 1
         seen.add(state)
         code, said, _ = killer.run(command.args, folder)
-        assert code == 0, f"{kind}, write {point}: does not go on: {said}"
+        assert code == 0 or (command.once and command.once in said), (
+            f"{kind}, write {point}: does not go on: {said}"
+        )
         if command.anew:
             assert held(folder) == ends.of(there, states[known.index(there)][1])
         else:
