@@ -69,7 +69,7 @@ def affordances(
             "--compare",
             help="Another run, beside it.",
             metavar="ID",
-            callback=check_count("--compare"),
+            parser=check_count("--compare"),
         ),
     ] = None,
     after_trial: Annotated[
@@ -78,7 +78,7 @@ def affordances(
             "--after-trial",
             help="The table before and after it.",
             metavar="ID",
-            callback=check_count("--after-trial"),
+            parser=check_count("--after-trial"),
         ),
     ] = None,
     database: Database = DEFAULT_DATABASE,
@@ -116,9 +116,7 @@ def row(
     *,
     row: Annotated[
         int,
-        typer.Argument(
-            help="A row's id in the database.", metavar="ID", callback=check_count("row")
-        ),
+        typer.Argument(help="A row's id in the database.", metavar="ID", parser=check_count("row")),
     ],
     database: Database = DEFAULT_DATABASE,
 ) -> Figure:
@@ -205,7 +203,7 @@ def learning(
             "--session",
             help="The robots of a reproduction.",
             metavar="ID",
-            callback=check_count("--session"),
+            parser=check_count("--session"),
         ),
     ] = None,
     database: Database = DEFAULT_DATABASE,

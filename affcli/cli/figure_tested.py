@@ -25,7 +25,7 @@ Session = Annotated[
         "--session",
         help="Its id; the latest finished one if not given.",
         metavar="ID",
-        callback=check_count("--session"),
+        parser=check_count("--session"),
     ),
 ]
 
@@ -35,7 +35,7 @@ def trial(
     number: Annotated[
         int,
         typer.Argument(
-            help="A trial's id in the database.", metavar="ID", callback=check_count("trial")
+            help="A trial's id in the database.", metavar="ID", parser=check_count("trial")
         ),
     ],
     *,

@@ -297,7 +297,7 @@ Workers = Annotated[
         "--workers",
         help="Processes; one for each core if not given.",
         metavar="N",
-        callback=check_count("--workers", MOST_WORKERS),
+        parser=check_count("--workers", MOST_WORKERS),
     ),
 ]
 Run = Annotated[

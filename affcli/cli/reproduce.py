@@ -42,7 +42,7 @@ def reproduce(
             "--robots",
             help="How many robots; 20 if not given.",
             metavar="N",
-            callback=check_count("--robots", MOST_ROBOTS),
+            parser=check_count("--robots", MOST_ROBOTS),
         ),
     ] = None,
     seed: Seed = 0,

@@ -140,7 +140,7 @@ WRONG: dict[str, tuple[int, tuple[str, ...], str]] = {
     "id 0": (4, ("affordances", "--run", "0"), "--run 0: must lie in 1 to 9223372036854775807"),
     "id 2^63": (4, ("row", "9223372036854775808"), "row 9223372036854775808: must lie in 1 to "),
     "negative id": (4, ("learning", "--session", "-1"), "--session -1: must lie in 1 to "),
-    "id in words": (2, ("row", "one"), "'ID'"),
+    "id in words": (2, ("row", "one"), "row one: must be a whole number"),
     "no id": (2, ("row",), "Missing argument"),
     "no such shape": (2, ("tools", "--becomes", "spoon"), "no tool 'spoon'"),
     "the same shape": (2, ("tools", "--becomes", "t-hook"), "does not become that by losing parts"),

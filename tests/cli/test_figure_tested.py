@@ -137,7 +137,7 @@ def test_strange_names_are_letters_in_a_figure(used: Path) -> None:
 USAGE: dict[str, tuple[tuple[str, ...], str]] = {
     "no trial": (("trial", "--out", "f.png"), "Missing argument 'ID'"),
     "nowhere": (("results",), "Missing option '--out'"),
-    "trial in words": (("trial", "first", "--out", "f.png"), "'ID'"),
+    "trial in words": (("trial", "first", "--out", "f.png"), "trial first: must be a whole number"),
     "unknown trial": (("trial", "99", "--out", "f.png"), "no trial 99; they are numbered 1 to 40"),
     "unknown steps": (
         ("trial", "9", "--steps", "5-12", "--out", "f.png"),

@@ -35,7 +35,7 @@ USAGE = {
     "seed in words": (("learn", "--tool", "stick", "--seed", "abc"), "--seed abc: must be a whole"),
     "seeds from to": (("learn", "--tool", "stick", "--seed", "0-9"), "--seed 0-9: must be a whole"),
     "broken seed": (("learn", "--tool", "stick", "--seed", "1.5"), "--seed 1.5: must be a whole"),
-    "robots in words": (("reproduce", "--robots", "many"), "'--robots'"),
+    "robots in words": (("reproduce", "--robots", "many"), "--robots many: must be a whole number"),
     "nothing to replay": (("replay",), "what? give one of TRIAL, --run ID and --all"),
     "trial in words": (("replay", "first"), "TRIAL first: must be a whole number"),
     "unknown option of replay": (("replay", "1", "--step", "2"), "No such option: --step"),
