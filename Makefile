@@ -79,9 +79,9 @@ test-browser: $(INSTALLED_BROWSER)
 	fi
 	$(VENV)/bin/pytest tests/browser --browser
 
-## torture       the long tests whole: a hundred kills, readers for a minute, random attacks, fuzzing
+## torture       the long tests whole: a hundred kills, readers for a minute, random attacks, fuzzing, new examples
 torture: $(INSTALLED_DEV)
-	$(VENV)/bin/pytest -m torture --torture --numprocesses auto --dist loadfile
+	$(VENV)/bin/pytest -m "torture or hypothesis" --torture --numprocesses auto --dist loadfile
 
 ## mutants       change the code in small ways, and see whether the tests find it [MUTANTS=400 SEED=1000]
 mutants: $(INSTALLED_MUTANTS)

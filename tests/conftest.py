@@ -9,8 +9,11 @@ from hypothesis import settings
 DONE = "done"
 """Under this name a test's report says what it did."""
 
-settings.register_profile("unhurried", deadline=None)
-settings.load_profile("unhurried")  # no test is about speed, and the machine may be busy
+# No test is about speed, and the machine may be busy. A property is tried on the same examples each
+# time, so that a change that breaks nothing cannot fail; `--torture` looks for new ones.
+settings.register_profile("same examples", deadline=None, derandomize=True)
+settings.register_profile("new examples", deadline=None)
+settings.load_profile("same examples")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -25,6 +28,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         action="store_true",
         help="what is bounded in a normal run runs whole: a hundred kills, readers for a minute",
     )
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Look for new examples where there is time for it."""
+    if config.getoption("--torture"):
+        settings.load_profile("new examples")
 
 
 @pytest.fixture

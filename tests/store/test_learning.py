@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from affcli.core.affordance import Affordance
 from affcli.core.behavior import (
     GRASP,
+    LONGEST_NAME,
     BehaviorCall,
     BehaviorName,
     ExecutionStatus,
@@ -148,7 +149,7 @@ def test_a_run_can_go_on_from_its_stored_checkpoint(store: Store) -> None:
 printable = st.characters(exclude_categories=["C", "Z"], include_characters=" ")
 calls = st.builds(
     BehaviorCall.of,
-    st.text(printable, min_size=1).map(BehaviorName),
+    st.text(printable, min_size=1, max_size=LONGEST_NAME).map(BehaviorName),
     st.dictionaries(
         st.text(st.characters(exclude_categories=["Cs"])),
         st.floats(allow_nan=False, allow_infinity=False),
