@@ -4,13 +4,16 @@ A part is found by the tuple PARTS of a file in its room: adding one is adding a
 made by `simulation.sensing`, which must know it, too.
 """
 
+import math
 import pkgutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
 from affcli.core.behavior import BehaviorCall, Repertoire
+from affcli.core.geometry import Point, near_any
 from affcli.core.identity import Component
 from affcli.core.names import one_of
 from affcli.core.part import Kind, Part
@@ -48,6 +51,9 @@ DEFAULTS: Mapping[str, str] = {
     "world": "table",
 }
 """What a run carries unless it is told otherwise: the paper's."""
+
+GRIP = 0.5
+"""How far the handle may lie beside the wrist (in)."""
 
 REMEDY = "install what made the record"
 """What to do about a record that names a part which is not here."""
@@ -110,16 +116,54 @@ def repertoire(texts: Sequence[str]) -> Repertoire:
 
 
 def tool(text: str, geometry: "ToolGeometry") -> Tool:
-    """Return the tool that a text names, in these sizes.
+    """Return the tool that a text names, in these sizes, or that a file describes.
 
     Raises:
-        UsageError, BadInputError: as `component`; its part makes a tool of another name.
+        UsageError, BadInputError: as `component`; its part makes a tool of another name; or the
+            file is not as it must be.
     """
+    if names_file(text):
+        return _own_tool(Path(text), geometry)
     chosen = component("tools", text)
     made: Tool = _built("tools", chosen)(geometry)
     if made.name != chosen.name:
         raise BadInputError(f"tool {chosen.name}: its part makes a {one_line(made.name, 40)}")
     return made
+
+
+def _own_tool(path: Path, geometry: "ToolGeometry") -> Tool:
+    """Return a person's own tool, which must not be taken for a registered one.
+
+    Raises:
+        BadInputError: it has the name of one, or its colour as the table sees colours (search 1 of
+            §6.2); or there is nothing of it where it is grasped.
+    """
+    # Few give a file; and NumPy takes long to load.
+    from affcli.core.affordance_table import COLOR_TOLERANCE
+    from affcli.tool_files import tool_from_file
+
+    made = tool_from_file(path)
+    source = f"tool {one_line(path)}"
+    for name in parts("tools"):
+        if name == made.name:
+            raise BadInputError(f"{source}: there is a {name}; give it another name")
+        if math.dist(made.color, tool(name, geometry).color) <= COLOR_TOLERANCE:
+            raise BadInputError(
+                f"{source}: its color is taken for that of the {name} (it is within "
+                f"{COLOR_TOLERANCE:g} of it); paint it otherwise"
+            )
+    lower_end = min(outline.bounds[1] for outline in made.outlines)
+    if not near_any(made.outlines, Point(0.0, lower_end + geometry.handle_below_grasp), GRIP):
+        raise BadInputError(
+            f"{source}: nothing to grasp at x = 0, {geometry.handle_below_grasp:g} in above its "
+            "lower end; let the handle lie there"
+        )
+    return made
+
+
+def names_file(text: str) -> bool:
+    """Tell whether what stands for a tool is a file, and no name."""
+    return text.endswith(".toml")
 
 
 def planner(chosen: Component) -> "Planner":

@@ -3,8 +3,7 @@
 A test that is about one of them says so with ``@pytest.mark.fault(number)``; `tests/test_faults.py`
 sees to it that each has one. Exit codes: 2 usage, 3 database, 4 bad input. Always: one line on
 stderr that says what is wrong, where, and what to do; never a traceback; nothing that was saved is
-lost. The numbers left out stand for what affcli does not have yet: tools and plug-ins of one's own,
-databases on a server.
+lost. The numbers left out stand for what affcli does not have yet: plug-ins, databases on a server.
 """
 
 FAULTS = {
@@ -39,13 +38,19 @@ FAULTS = {
     "network: `affcli doctor` points it out and says what to do.",
     18: "A copy is made during a run: it opens, and its counts agree with one another.",
     19: "Something is said to be saved: the disk has confirmed it before.",
-    20: "A tool is named as a path, absolute or through a link: refused; and no output goes "
-    "anywhere but where it was asked for.",
+    20: "A tool is named as a path, absolute or through a link, which is no TOML file, or a file "
+    "gives it such a name: refused; and no output goes anywhere but where it was asked for.",
     21: "Names with markup, escape sequences, NUL, halves of characters, or of 10 kB: refused, or "
     "shown escaped.",
     22: "SQL where a name is wanted, anywhere: it is a name and nothing else.",
     23: "NaN, infinity, negative masses, frictions and sizes: 4, the field is named, and they "
     "never reach the physics engine, which would end the process.",
+    24: "A tool of 100,000 corners, or a file of 10 MB: 4, within a second.",
+    25: "A tool's outline that crosses itself or has no area: 4, and the place is named; one that "
+    "is drawn clockwise is taken as if it were not.",
+    26: "A tool's outline that bends inwards: it is cut into convex parts, whose areas sum to its "
+    "own.",
+    27: "TOML that is nested deep, or a number of thousands of digits: 4.",
     29: "The simulation diverges: the trial is invalid, and never counts as a success.",
     30: "`affcli sql` with anything but one SELECT, or one that is endless or huge: denied, or "
     "stopped within two seconds.",

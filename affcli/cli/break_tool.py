@@ -1,6 +1,11 @@
 """``affcli break-tool``: the tool breaks, the robot is not told, and adapts (§7.2)."""
 
-from affcli import lab
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from affcli import lab, registry
 from affcli.cli.database import learned_runs, opened, say_trials, tool_or_default
 from affcli.cli.options import (
     DEFAULT_BROKEN,
@@ -21,12 +26,22 @@ from affcli.cli.terminal import now, progress, show_either
 from affcli.errors import UsageError
 from affcli.report.breaking import broken_json, broken_tables
 
+if TYPE_CHECKING:
+    from affcli.core.specs import LearningSpec
+    from affcli.core.tool import Tool
+
 
 def break_tool(
     *,
     tool: LearnedTool = None,
     run: Run = None,
-    becomes: Becomes = DEFAULT_BROKEN,
+    becomes: Becomes = None,
+    loses: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--loses", help="A part that breaks off; several times for several.", metavar="PART"
+        ),
+    ] = None,
     task: TaskSet = DEFAULT_TASKS,
     planner: Planner = DEFAULT_PLANNER,  # type: ignore[assignment]  # parsed like any other
     seed: Seed = 0,
@@ -39,15 +54,15 @@ def break_tool(
     Every trial starts from the table as learned and leaves the stored counters alone. The same
     trials are done with the whole tool, to compare.
     """
+    if becomes and loses:
+        raise UsageError("--becomes the tool that is left, or --loses parts: give one of them")
     with opened(database, write=True) as store:
         (used,) = learned_runs(store, tool_or_default(tool, run), database, run)
         name = used.spec.tool
-        if becomes == name:
-            raise UsageError(f"--becomes {name}: a broken {name} must be another tool than it was")
-        left = lab.run_parts.tool_of(used.spec, becomes)
+        left = _left(used.spec, becomes, loses or ())
         events = lab.breaking.break_tool(store, used, left, seed, now, planner, sensor, task)
         numbers, trials = [], []
-        with progress(f"{name} becomes {becomes}", 1.0) as bar:
+        with progress(f"{name} becomes {left.name}", 1.0) as bar:
             for number, trial, share in events:
                 numbers.append(number)
                 trials.append(trial)
@@ -63,3 +78,17 @@ def break_tool(
         if any(step.lost for step in trial.steps)
     ]
     say_trials(numbers, (tried_in_vain or numbers)[0], database)
+
+
+def _left(used: "LearningSpec", becomes: str | None, loses: Sequence[str]) -> "Tool":
+    """Return what is left of the tool of a run: another tool, or it without some parts."""
+    name = used.tool
+    if loses:
+        return lab.run_parts.without(used, loses)
+    if becomes is None and name not in registry.parts("tools"):
+        parts = ", ".join(part.name for part in used.held.parts)
+        raise UsageError(f"what does the {name} lose? give --loses with one of {parts}")
+    left = lab.run_parts.tool_of(used, becomes or DEFAULT_BROKEN)
+    if left.name == name:
+        raise UsageError(f"--becomes {name}: a broken {name} must be another tool than it was")
+    return left

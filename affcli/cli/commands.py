@@ -216,6 +216,19 @@ TABLE = Group(
     ),
 )
 
+NEW = Group(
+    "new",
+    "Write a file to begin with.",
+    (
+        Command(
+            "tool",
+            "new:tool",
+            "Write a tool to begin with: a rake, with what to change said beside it.",
+            "affcli new tool rake",
+        ),
+    ),
+)
+
 SECTIONS: dict[str, tuple[Command | Group, ...]] = {
     "Learn and use": (
         Command(
@@ -325,6 +338,13 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
             "settings:settings",
             "Show all settings: what each means, its default, its unit and what it may be.",
             "affcli settings",
+        ),
+        NEW,
+        Command(
+            "check",
+            "check:check",
+            "Say what a file of yours is, or what is wrong in it and where.",
+            "affcli check rake.toml",
         ),
     ),
 }

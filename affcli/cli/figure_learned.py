@@ -161,7 +161,7 @@ def tools(
         str,
         typer.Option("--tool", help="The one that breaks.", metavar="NAME", callback=checked_tool),
     ] = DEFAULT_TOOL,
-    becomes: Becomes = DEFAULT_BROKEN,
+    becomes: Becomes = None,
     config: Config = None,
     changes: Changes = None,
 ) -> Figure:
@@ -172,6 +172,7 @@ def tools(
     settings = load_settings(config, changes or ())
     place = settings.workspace
     known = [registry.tool(name, place.tools) for name in registry.parts("tools")]
+    becomes = becomes or DEFAULT_BROKEN
     whole, left = (registry.tool(name, place.tools) for name in (tool, becomes))
     if left.parts_missing_in(whole) or not whole.parts_missing_in(left):
         raise UsageError(f"--becomes {becomes}: a {tool} does not become that by losing parts")

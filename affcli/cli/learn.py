@@ -111,6 +111,8 @@ def learn(
         settings, repertoire=repertoire or (), binding=binding, explorer=explorer, world=world
     )
     specs = [parts.spec(name, seed, 0, hours, behaviors) for name in names]
+    for words in filter(None, map(lab.run_parts.beyond_the_box, specs)):
+        say(words)
     with opened(database, create=bool(names), write=True) as store:
         if not names:
             specs = lab.learning.interrupted(store)

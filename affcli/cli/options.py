@@ -115,7 +115,12 @@ def _is_surrogate(letter: str) -> bool:
 
 
 def checked_tool(name: str) -> str:
-    """Return how a registered tool is named, with its parameters if they are not the default."""
+    """Return how a registered tool is named, with its parameters if they are not the default.
+
+    What names a file is read when the sizes are known that it is held against.
+    """
+    if registry.names_file(name):
+        return name
     return str(registry.component("tools", name))
 
 
@@ -275,8 +280,16 @@ LearnedTool = Annotated[
     ),
 ]
 DEFAULT_TOOL = "t-hook"
-Becomes = Annotated[str, typer.Option("--becomes", help="The tool that is left.", metavar="NAME")]
 DEFAULT_BROKEN = "l-hook"
+Becomes = Annotated[
+    str | None,
+    typer.Option(
+        "--becomes",
+        help=f"The tool that is left (default: {DEFAULT_BROKEN}).",
+        metavar="NAME",
+        autocompletion=names_of("tools"),
+    ),
+]
 HeldShape = Annotated[
     str | None,
     typer.Option(

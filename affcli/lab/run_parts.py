@@ -1,6 +1,8 @@
 """The parts that a run carries: chosen by name for a new one, brought back for a stored one."""
 
 import json
+import math
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -8,10 +10,11 @@ from functools import lru_cache
 from affcli import registry
 from affcli.config import Settings, require_known, settings_from, with_sensor
 from affcli.core.identity import Component, canonical_json
+from affcli.core.names import one_of
 from affcli.core.observation import SensorKind
 from affcli.core.specs import LearningSpec, Parts
 from affcli.core.task import Task
-from affcli.core.tool import Tool, hold_of
+from affcli.core.tool import Tool, ToolName, hold_of
 from affcli.core.world import World
 from affcli.errors import BadInputError, DatabaseError, UsageError, one_line
 from affcli.simulation.sensing import require_camera
@@ -64,6 +67,36 @@ class RunParts(Parts):
         return registry.tool(name, settings_of_text(self.settings).workspace.tools)
 
 
+def beyond_the_box(learned: LearningSpec) -> str:
+    """Return where babbling will not put the attractor though the tool is there; empty if nowhere.
+
+    The robot knows nothing of the tool's shape (§4), so one box serves all tools: one that is
+    larger, or held otherwise, is not learned where it lies outside.
+    """
+    settings = settings_of(learned)
+    box, radius = settings.babbling, settings.workspace.puck.radius
+    outlines = learned.held.held(hold_of(learned.binding)).outlines
+    sides = max(max(-o.bounds[0], o.bounds[2]) for o in outlines) + radius
+    far = max(o.bounds[3] for o in outlines) + radius
+    wider = [
+        f"{key}={math.ceil(10.0 * needed) / 10.0:g}"
+        for key, needed, has in (
+            ("offset_x_max", sides, box.offset_x_max),
+            ("offset_y_max", far, box.offset_y_max),
+        )
+        if needed > has
+    ]
+    if far <= box.offset_y_min:
+        wider.append(f"offset_y_min={min(0.0, far):g}")
+    if not wider:
+        return ""
+    changes = " ".join(f"--set babbling.{one}" for one in wider)
+    return (
+        f"babbling does not bring the attractor to all sides of the {learned.tool} as it is held; "
+        f"for that: {changes}"
+    )
+
+
 def settings_of(learned: Parts, sensor: SensorKind | None = None) -> Settings:
     """Return the settings of runs with these parts, seen through their own sensor or another."""
     return with_sensor(settings_of_text(learned.settings), sensor or learned.sensor)
@@ -74,6 +107,27 @@ def tool_of(learned: LearningSpec, name: str) -> Tool:
     if name == learned.tool:
         return learned.held
     return registry.tool(name, settings_of_text(learned.settings).workspace.tools)
+
+
+def without(learned: LearningSpec, lost: Sequence[str]) -> Tool:
+    """Return what is left of the tool that was learned when parts break off.
+
+    Args:
+        learned: the run.
+        lost: their names; of a part that was cut into convex ones, ``tine`` for ``tine 1`` and so
+            on.
+
+    Raises:
+        UsageError: it has no such part, or nothing would be left.
+    """
+    whole = learned.held
+    named = {part.name: re.sub(r" [0-9]+$", "", part.name) for part in whole.parts}
+    for name in lost:
+        one_of(f"part of the {whole.name}", name, dict.fromkeys([*named, *named.values()]))
+    left = tuple(p for p in whole.parts if not {p.name, named[p.name]} & set(lost))
+    if not left:
+        raise UsageError(f"--loses: nothing would be left of the {whole.name}; leave a part on it")
+    return replace(whole, name=ToolName(f"{whole.name} without {', '.join(lost)}"), parts=left)
 
 
 def world_of(learned: LearningSpec, *, again: bool = False) -> World:

@@ -85,6 +85,7 @@ def keys_of(documented: str) -> list[str]:
 
 
 OF_NO_USED_DATABASE = {"camera", "list", "settings", "sql", "compare", "power", "experiment"}
+OF_NO_USED_DATABASE |= {"check"}
 OF_A_DATABASE = [one for one in DOCUMENTED if one.split()[0] not in OF_NO_USED_DATABASE]
 
 
@@ -115,6 +116,13 @@ def test_an_experiment_has_its_keys(documented: str, tmp_path: Path) -> None:
     file.write_text(EXPERIMENT)
     (result,) = answer(documented, tmp_path / "one.db", file, "--workers", "1")
     assert list(result) == DOCUMENTED[documented]
+
+
+def test_what_is_said_of_a_file_has_its_keys(tmp_path: Path) -> None:
+    file = tmp_path / "one.toml"
+    file.write_text(EXPERIMENT)
+    (result,) = answer("check", None, file)
+    assert list(result) == DOCUMENTED["check"]
 
 
 @pytest.mark.parametrize("documented", ["list", "settings"])

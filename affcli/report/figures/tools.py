@@ -23,7 +23,7 @@ ASPECTS = 0.5, 2.5
 
 def tools_figure(
     tools: Sequence[Tool],
-    broken: tuple[Tool, Tool],
+    broken: tuple[Tool, Tool] | None,
     puck_radius: float,
     width: float | None = None,
 ) -> Figure:
@@ -33,38 +33,44 @@ def tools_figure(
 
     Args:
         tools: the paper's stand in its order, then the others.
-        broken: a tool as it was, and the shape that is left of it, which keeps its colour (§7.2).
+        broken: a tool as it was, and the shape that is left of it, which keeps its colour (§7.2);
+            None to draw none.
         puck_radius: of the attractor (in).
         width: in; that of two columns if not given.
     """
     width, tools = width or TWO_COLUMNS, in_papers_order(tools, lambda tool: tool.name)
-    whole, left = broken
-    lost = whole.parts_missing_in(left)
     with canvas(width) as figure:
-        count = len(tools) + 2
+        count = len(tools) + (1 if broken is None else 2)
         columns = columns_for(count, int(width / NARROWEST))
-        attractor, *panels, last = map_panels(figure, count, columns, ("", ""))
+        things = map_panels(figure, count, columns, ("", ""))
+        attractor, *panels = things
         _draw_attractor(attractor, puck_radius)
         named: set[str] = set()
-        for axes, tool in zip(panels, tools, strict=True):
+        for axes, tool in zip(panels, tools, strict=False):  # the last is of the broken one
             axes.set_xlabel(wrapped(tool_words(tool.name), 7.0, width / columns - 0.1))
             draw_parts(axes, tool.parts, fill=_paint(tool.color), edge=INK)
             _mark_grasp_point(axes, "" if named else "grasp point")
             for part in (part for part in tool.parts if part.name not in named):
                 _name_part(axes, part, part.name)
                 named.add(part.name)
-        broke = f"{tool_words(whole.name)} that broke: the shape of the {tool_words(left.name)}"
-        last.set_xlabel(wrapped(broke, 7.0, width / columns - 0.1))
-        draw_parts(last, left.parts, fill=_paint(whole.color), edge=INK)
-        draw_parts(last, lost, edge=INK, missing=True)
-        _mark_grasp_point(last, "")
-        _name_part(last, lost[-1], "lost")
-        things = [attractor, *panels, last]
+        if broken is not None:
+            _draw_broken(panels[-1], *broken, width / columns - 0.1)
         for axes in things:
             axes.spines[:].set_visible(False)
             axes.tick_params(length=0.0, labelleft=False, labelbottom=False)
         fit_maps(figure, things, room=MARGIN, aspects=ASPECTS)
     return figure
+
+
+def _draw_broken(axes: Axes, whole: Tool, left: Tool, room: float) -> None:
+    """Draw what is left of a tool, in its colour, and where the lost parts were."""
+    lost = whole.parts_missing_in(left)
+    broke = f"{tool_words(whole.name)} that broke: the shape of the {tool_words(left.name)}"
+    axes.set_xlabel(wrapped(broke, 7.0, room))
+    draw_parts(axes, left.parts, fill=_paint(whole.color), edge=INK)
+    draw_parts(axes, lost, edge=INK, missing=True)
+    _mark_grasp_point(axes, "")
+    _name_part(axes, lost[-1], "lost")
 
 
 def _draw_attractor(axes: Axes, radius: float) -> None:
