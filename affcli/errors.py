@@ -47,6 +47,12 @@ class WorkersDiedError(AffcliError):
     exit_code = 4
 
 
+class ClusterError(AffcliError):
+    """The scheduler of a cluster does not answer, or none of its workers can be used."""
+
+    exit_code = 4
+
+
 def one_line(text: object, limit: int = 200) -> str:
     """Return `text` as one printable line, so that an error can quote what a user wrote."""
     try:

@@ -121,11 +121,13 @@ class ExperimentRuns(NamedTuple):
         experiment: its name.
         conditions: how many.
         learning_runs: how many its robots made.
+        failed: the numbers of its robots that failed.
     """
 
     experiment: str
     conditions: int
     learning_runs: int
+    failed: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

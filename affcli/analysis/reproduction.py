@@ -1,12 +1,12 @@
 """What many robots gave: successes beside the paper's, and of what the paper has not (§7)."""
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from affcli.analysis.paper import EXTENSION_OF_REACH, other_parts, papers_break, papers_cell
-from affcli.core.records import SessionInfo
+from affcli.core.records import FailedRobot, SessionInfo
 from affcli.core.results import SuccessCount
 from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome, is_counted
@@ -49,6 +49,7 @@ class Reproduction:
         trials: how many they are.
         tries_on_lost: tries on lost affordances with broken tools, over all of them.
         invalid: how many trials count for nothing: their simulation failed.
+        failed: the robots that could not live.
     """
 
     session: SessionInfo
@@ -60,24 +61,27 @@ class Reproduction:
     trials: int
     tries_on_lost: int
     invalid: int = 0
+    failed: tuple[FailedRobot, ...] = ()
 
     @classmethod
     def of(
         cls,
         session: SessionInfo,
-        robots: int,
+        robots: Collection[int],
         counts: Iterable[SuccessCount],
         outcomes: Mapping[Outcome, int],
         tries_on_lost: int,
+        failed: tuple[FailedRobot, ...] = (),
     ) -> "Reproduction":
         """Sum up the trials of a session.
 
         Args:
             session: which.
-            robots: how many are saved, numbered from 0.
+            robots: the numbers of those that are saved.
             counts: successes by robot, kind of trial and goal.
             outcomes: how its trials ended.
             tries_on_lost: over all of them.
+            failed: the robots that could not live.
         """
         papers = not other_parts(session.spec)
         solved: dict[tuple[str, str], Counter[int]] = defaultdict(Counter)
@@ -91,10 +95,10 @@ class Reproduction:
             else:
                 kind = TrialKind(one.protocol, one.tool, one.shape, one.task_set, one.planner)
                 others.setdefault(kind, {}).setdefault(one.goal, []).append(one)
-        failed = failures_in(outcomes)
+        ends = failures_in(outcomes)
         return cls(
             session,
-            robots,
+            len(robots),
             {
                 cell: _by_robot(solved[cell], robots)
                 for cell in EXTENSION_OF_REACH
@@ -105,7 +109,8 @@ class Reproduction:
                 kind: {goal: _solved(some, robots) for goal, some in goals.items()}
                 for kind, goals in others.items()
             },
-            *(failed.kinds, failed.trials, tries_on_lost, failed.invalid),
+            *(ends.kinds, ends.trials, tries_on_lost, ends.invalid),
+            failed,
         )
 
     @property
@@ -139,7 +144,7 @@ def failures_in(outcomes: Mapping[Outcome, int]) -> Failures:
     return Failures(dict(ordered), trials, sum(outcomes.values()) - trials)
 
 
-def _solved(counts: Iterable[SuccessCount], robots: int) -> Solved:
+def _solved(counts: Iterable[SuccessCount], robots: Iterable[int]) -> Solved:
     """Return the successes of each robot, and all trials."""
     by_robot: Counter[int] = Counter()
     tried = 0
@@ -149,6 +154,6 @@ def _solved(counts: Iterable[SuccessCount], robots: int) -> Solved:
     return Solved(_by_robot(by_robot, robots), tried)
 
 
-def _by_robot(counts: Mapping[int, int], robots: int) -> list[int]:
-    """Return one count for each robot."""
-    return [counts.get(robot, 0) for robot in range(robots)]
+def _by_robot(counts: Mapping[int, int], robots: Iterable[int]) -> list[int]:
+    """Return one count for each robot, in the order of their numbers."""
+    return [counts.get(robot, 0) for robot in sorted(robots)]

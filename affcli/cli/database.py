@@ -10,9 +10,11 @@ from pathlib import Path
 from affcli import registry, store
 from affcli.cli.options import DEFAULT_DATABASE, DEFAULT_TOOL
 from affcli.cli.terminal import say
-from affcli.core.records import LearningRunInfo
+from affcli.core.records import FailedRobot, LearningRunInfo
 from affcli.core.specs import LIVES
-from affcli.errors import UsageError, one_line
+from affcli.errors import BadInputError, UsageError, one_line
+
+MOST_NAMED = 10
 
 MOST_NAMED = 3
 """So many records that cannot be read are named; `affcli db check` finds the others."""
@@ -89,6 +91,16 @@ def tool_or_default(tool: str | None, run: int | None) -> str | None:
 def with_database(command: str, database: Path) -> str:
     """Return a command to suggest, with the database named when it is not the usual one."""
     return command if database == DEFAULT_DATABASE else f"{command} --db {one_line(database)}"
+
+
+def say_failed(failed: Sequence[FailedRobot]) -> int:
+    """Say which robots failed, if any did; return the exit code."""
+    if not failed:
+        return 0
+    names = ", ".join(str(one.robot) for one in failed[:MOST_NAMED])
+    more = f" and {len(failed) - MOST_NAMED} more" if len(failed) > MOST_NAMED else ""
+    say(f"failed: robot {names}{more}; the same command tries again")
+    return BadInputError.exit_code
 
 
 def say_trials(numbers: Sequence[int], worth_seeing: int, database: Path) -> None:

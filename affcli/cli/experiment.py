@@ -10,14 +10,15 @@ import typer
 from affcli import lab
 from affcli import store as stores
 from affcli.analysis.experiment import tallies
-from affcli.cli.database import opened
+from affcli.cli.database import opened, say_failed
 from affcli.cli.options import (
     DEFAULT_DATABASE,
     AsJson,
     Database,
     Resume,
+    Scheduler,
     Workers,
-    checked_workers,
+    checked_pool,
 )
 from affcli.cli.terminal import now, progress, say, show_either
 from affcli.core.names import one_of
@@ -30,7 +31,7 @@ from affcli.report.experiment import (
     cost_json,
     cost_table,
     experiment_json,
-    experiment_table,
+    experiment_tables,
 )
 
 
@@ -91,41 +92,45 @@ def experiment(
         ),
     ] = None,
     workers: Workers = None,
+    scheduler: Scheduler = None,
     database: Database = DEFAULT_DATABASE,
     as_json: AsJson = False,
-) -> None:
+) -> int:
     """Let many robots live under several conditions, as a file says.
 
     Conditions are paired robot by robot: what they share is learned once. The result is the same
     for any number of workers. An interrupted experiment goes on when the same command is given
-    again, as does the latest one with --resume alone, but for its --shard.
+    again, as does the latest one with --resume alone, but for its --shard. A robot that fails three
+    times is named, and the others go on (exit code 4); the same command tries it again.
     """
-    count = checked_workers(workers)
+    pool = checked_pool(workers, scheduler)
     if file is None and (dry_run or not resume):
         raise UsageError("which experiment? give a TOML file, or --resume")
     wanted = None if file is None else lab.definition.experiment_file(file)
     if dry_run and wanted is not None:
-        _say_cost(wanted, count, keep or Keep.ALL, as_json=as_json)
-        return
+        _say_cost(wanted, shard or Shard(), pool, keep or Keep.ALL, as_json=as_json)
+        return 0
     with opened(database, create=wanted is not None, write=True) as store:
         what = wanted or _interrupted(store, database)
         info = lab.conducting.begin(store, what, now, keep)
         robots = (shard or Shard()).of(what.robots)
         with progress(one_line(what.name), len(robots), "robots") as bar:
-            for saved in lab.conducting.run(store, what, info, count, now, say, robots, keep):
+            for saved in lab.conducting.run(store, what, info, pool, now, say, robots, keep):
                 bar(saved, "")
         # Meanwhile another process may have asked for more robots.
         wished = store.experiments.named(what.name).definition["experiment"]["robots"]
         results = _results(store, info)
+        failed = store.sessions.failed_robots(info.conditions[0][1])
         there = len(store.sessions.saved_robots(info.conditions[0][1]))
     of_all = f"{there}" if there == wished else f"{there} of {wished}"
     say(f"experiment {one_line(what.name)}: {of_all} robots, saved in {one_line(database)}")
-    said = (what.name, what.question, there, results)
+    said = (what.name, what.question, there, results, failed)
     show_either(
         as_json=as_json,
         results=lambda: [experiment_json(*said)],
-        tables=lambda: [experiment_table(*said)],
+        tables=lambda: experiment_tables(*said),
     )
+    return say_failed(failed)
 
 
 def _interrupted(store: "stores.Store", database: Path) -> "lab.experiment.Experiment":
@@ -138,12 +143,14 @@ def _interrupted(store: "stores.Store", database: Path) -> "lab.experiment.Exper
 
 
 def _say_cost(
-    what: "lab.experiment.Experiment", workers: int, keep: Keep, *, as_json: bool
+    what: "lab.experiment.Experiment", shard: Shard, pool: object, keep: Keep, *, as_json: bool
 ) -> None:
-    """Let one robot live, and say what all of them will take."""
+    """Let one robot live, and say what all of them will take; in a cluster, on one worker."""
+    robots = shard.of(what.robots)
     with progress("one robot", 1.0):
-        found = lab.conducting.estimate(what, now, keep)
+        found = lab.conducting.estimate(what, now, keep, robots)
     counts = (found.robots, found.learning_runs, found.trials, found.robot_hours)
+    workers = pool if isinstance(pool, int) else 1
     cost = Cost(*counts, found.seconds, found.bytes, workers)
     names = [condition.name for condition in what.conditions]
     show_either(

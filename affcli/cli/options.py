@@ -10,11 +10,11 @@ import re
 from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from affcli import registry, store
+from affcli import lab, registry, store
 from affcli.cli.terminal import say
 from affcli.core.identity import Component
 from affcli.core.limits import LARGEST_SEED, LONGEST_HOURS, LONGEST_NOTE
@@ -22,6 +22,9 @@ from affcli.core.names import one_of
 from affcli.core.observation import SENSOR_KINDS, SensorKind
 from affcli.core.part import Kind
 from affcli.errors import BadInputError, UsageError, one_line
+
+if TYPE_CHECKING:
+    from affcli.lab.cluster import Cluster
 
 LARGEST_ID = LARGEST_SEED
 MOST_TRIES = 100_000
@@ -136,6 +139,17 @@ def checked_workers(workers: int | None) -> int:
         return workers
     known = hasattr(os, "sched_getaffinity")
     return min(len(os.sched_getaffinity(0)), MOST_WORKERS) if known else 1
+
+
+def checked_pool(workers: int | None, scheduler: str | None) -> "int | Cluster":
+    """Return who is to work: so many processes, or a cluster; UsageError when both are given."""
+    if scheduler is None:
+        return checked_workers(workers)
+    if workers is not None:
+        raise UsageError(
+            "--workers are processes of this machine, --scheduler is of a cluster: give one of them"
+        )
+    return lab.cluster.cluster_at(scheduler)
 
 
 def check_if_given(check: Callable[[Any], Any]) -> Callable[[Any], Any]:
@@ -311,6 +325,14 @@ Workers = Annotated[
         help="Processes; one for each core if not given.",
         metavar="N",
         parser=check_count("--workers", MOST_WORKERS),
+    ),
+]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(
+        "--scheduler",
+        help="Let the workers of a Dask cluster work: tcp://HOST:PORT, or its scheduler's file.",
+        metavar="WHERE",
     ),
 ]
 Run = Annotated[

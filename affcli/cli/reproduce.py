@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from affcli import lab
-from affcli.cli.database import opened
+from affcli.cli.database import opened, say_failed
 from affcli.cli.options import (
     DEFAULT_DATABASE,
     DEFAULT_PLANNER,
@@ -18,12 +18,13 @@ from affcli.cli.options import (
     Planner,
     Repertoire,
     Resume,
+    Scheduler,
     Seed,
     Sensor,
     Workers,
     World,
     check_count,
-    checked_workers,
+    checked_pool,
 )
 from affcli.cli.terminal import now, progress, say, show_either
 from affcli.config import load_settings, with_sensor
@@ -54,11 +55,12 @@ def reproduce(
     world: World = None,
     resume: Resume = False,
     workers: Workers = None,
+    scheduler: Scheduler = None,
     database: Database = DEFAULT_DATABASE,
     config: Config = None,
     changes: Changes = None,
     as_json: AsJson = False,
-) -> None:
+) -> int:
     """Reproduce the paper with many robots: five tools, 80 + 16 trials each.
 
     The result is the same for any number of workers. An interrupted reproduction goes on when the
@@ -68,6 +70,7 @@ def reproduce(
     own = any(given) or str(planner) != DEFAULT_PLANNER
     if robots is None:
         robots = FEW_ROBOTS
+    pool = checked_pool(workers, scheduler)
     settings = with_sensor(load_settings(config, changes or ()), sensor)
     chosen = lab.run_parts.RunParts.chosen(
         settings, repertoire=repertoire or (), binding=binding, explorer=explorer, world=world
@@ -81,15 +84,17 @@ def reproduce(
                     f"nothing to resume in {database}; begin one: affcli reproduce --robots 20"
                 )
             what, robots = lab.reproduction.reproduced_again(begun[-1].spec), begun[-1].spec.robots
-        events = lab.reproduction.reproduce(store, what, robots, checked_workers(workers), now, say)
+        events = lab.reproduction.reproduce(store, what, robots, pool, now, say)
         session = next(events)
         with progress("reproducing", robots, "robots") as bar:
             for saved in events:
                 bar(saved, "")
-        result = lab.overview.reproduction_of(store, session, robots)
-    say(f"session {session}: {robots} robots, seed {what.seed}, saved in {database}")
+        result = lab.overview.reproduction_of(store, session)
+    of_all = f"{robots}" if result.robots == robots else f"{result.robots} of {robots}"
+    say(f"session {session}: {of_all} robots, seed {what.seed}, saved in {database}")
     show_either(
         as_json=as_json,
         results=lambda: [reproduction_json(result)],
         tables=lambda: reproduction_tables(result),
     )
+    return say_failed(result.failed)

@@ -37,6 +37,25 @@ class SessionInfo:
 
 
 @dataclass(frozen=True, slots=True)
+class FailedRobot:
+    """A robot of an experiment or of a reproduction that could not live.
+
+    Args:
+        robot: its number.
+        kind: of the error, by its class.
+        message: of the error, in one line.
+        tries: how often it was tried, or its worker lost.
+        traceback: where it was raised; None for what a user can put right.
+    """
+
+    robot: int
+    kind: str
+    message: str
+    tries: int
+    traceback: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class ExperimentInfo:
     """An experiment.
 
@@ -47,7 +66,7 @@ class ExperimentInfo:
         definition: as JSON types: what `affcli.lab.definition` reads.
         key: of all that its robots' lives are functions of.
         versions: what it was begun with.
-        status: ``done`` when all its robots are saved, else ``running``.
+        status: ``done`` when all its robots are saved or failed, else ``running``.
         conditions: the name and the session of each, in order.
     """
 

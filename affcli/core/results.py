@@ -149,11 +149,13 @@ class ConditionCounts:
             number, if the two share their seed.
         cells: for each cell by robot how many trials ended, and how many of them were solved;
             invalid ones are left out.
+        failed: the numbers of the robots that could not live, which tried nothing.
     """
 
     name: str
     session: SessionInfo
     cells: Mapping[Cell, Mapping[int, tuple[int, int]]]
+    failed: tuple[int, ...] = ()
 
     @property
     def robots(self) -> frozenset[int]:

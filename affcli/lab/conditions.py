@@ -109,7 +109,8 @@ def _first(conditions: Sequence[Condition], first: int) -> list[Condition]:
 def counts_of(store: Store, condition: Condition) -> ConditionCounts:
     """Return what the robots of a condition solved, trials told apart by all that can tell."""
     cells = store.results.solved_by_cell(condition.session.id, FIELDS)
-    return ConditionCounts(condition.name, condition.session, cells)
+    failed = tuple(one.robot for one in store.sessions.failed_robots(condition.session.id))
+    return ConditionCounts(condition.name, condition.session, cells, failed)
 
 
 def _fields(by: Sequence[str]) -> list[str]:

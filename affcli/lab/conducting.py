@@ -5,6 +5,7 @@ who is missing.
 """
 
 import time
+import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
@@ -14,16 +15,18 @@ from tempfile import TemporaryDirectory
 from typing import NoReturn
 
 from affcli.core.identity import canonical_json
-from affcli.core.records import ExperimentInfo
+from affcli.core.records import ExperimentInfo, FailedRobot
 from affcli.core.specs import EXPERIMENT, Keep
 from affcli.errors import AffcliError, UsageError, one_line
 from affcli.lab.experiment import Condition, Experiment, one_robot
 from affcli.lab.versions import versions
-from affcli.lab.workers import Failed, in_order
+from affcli.lab.workers import Failed, Pool, in_order
 from affcli.store import PackedRobot, Store, open_store, pack_robot
 
 FAIL_AT_ONCE = 3
 """When so many robots at the beginning fail, and none lives, all of them would."""
+LONGEST_MESSAGE, LONGEST_TRACEBACK = 500, 20_000
+"""Letters of what is noted of a robot that failed."""
 
 
 def begin(
@@ -83,7 +86,7 @@ def conduct(
     experiment: Experiment,
     sessions: Sequence[int],
     robots: Sequence[int],
-    workers: int,
+    workers: int | Pool,
     now: Callable[[], str],
     warn: Callable[[str], object] = str,
     keep: Keep = Keep.ALL,
@@ -91,24 +94,26 @@ def conduct(
     """Let robots of an experiment live; save each as it is done.
 
     Robots that the store holds already are not run again. The others are saved in the order given,
-    by this process alone: the same store for any number of workers.
+    by this process alone: the same store for any number of workers. Of a robot that fails, the same
+    way each time it is tried, that is noted; it is tried again when it is asked for again.
 
     Args:
         store: open for writing.
         experiment: robot i is a function of (experiment, i).
         sessions: those of its conditions, in order.
         robots: their numbers.
-        workers: processes; 1 runs everything in this one.
+        workers: processes, 1 runs everything in this one; or another pool.
         now: gives the time as ISO text.
-        warn: is told when the processes cannot be started, and one does it all.
+        warn: is told when the processes cannot be started, and one does it all; or what of another
+            pool is as it should not be.
         keep: how much of their lives is saved.
 
     Yields:
         How many of these robots are saved: at the beginning, and each time one more is.
 
     Raises:
-        AffcliError, or what a robot raised: robots failed, the same way each time they were tried.
-            All others are saved, unless the first three failed.
+        AffcliError, or what a robot raised: none of these robots is saved, for all failed, or the
+            first three.
     """
     made_with = dict(zip(sessions, map(_made_with, experiment.conditions), strict=True))
     there = store.sessions.saved_robots(sessions[0])
@@ -122,14 +127,24 @@ def conduct(
         for robot, life in zip(missing, lives, strict=True):
             if isinstance(life, Failed):
                 failed[robot] = life.error
-                if list(failed) == missing[:FAIL_AT_ONCE]:
+                store.sessions.save_failure(sessions[0], _failed(robot, life), now())
+                if not saved and len(failed) == FAIL_AT_ONCE:
                     break
             else:
                 store.sessions.save_robot(made_with, life, now())
                 saved += 1
                 yield saved
-    if failed:
+    if failed and not saved:
         _raise(failed)
+
+
+def _failed(robot: int, life: Failed) -> FailedRobot:
+    """Return what is noted of a robot that failed; of a bug with its traceback."""
+    error, where = life.error, None
+    if not isinstance(error, AffcliError):
+        where = "".join(traceback.format_exception(error))[-LONGEST_TRACEBACK:]
+    kind, message = type(error).__name__, one_line(error, LONGEST_MESSAGE)
+    return FailedRobot(robot, kind, message, life.tries, where)
 
 
 def _raise(failed: Mapping[int, Exception]) -> NoReturn:
@@ -137,10 +152,7 @@ def _raise(failed: Mapping[int, Exception]) -> NoReturn:
     (robot, error), *others = failed.items()
     more = f" (and {len(others)} more)" if others else ""
     if isinstance(error, AffcliError):
-        raise type(error)(
-            f"robot {robot}{more}: {error}; what the others did is saved, and the same command "
-            "tries again"
-        ) from error
+        raise type(error)(f"robot {robot}{more}: {error}; the same command tries again") from error
     error.add_note(f"robot {robot}{more}")
     raise error
 
@@ -149,7 +161,7 @@ def run(
     store: Store,
     experiment: Experiment,
     info: ExperimentInfo,
-    workers: int,
+    workers: int | Pool,
     now: Callable[[], str],
     warn: Callable[[str], object] = str,
     robots: Sequence[int] | None = None,
@@ -186,8 +198,20 @@ class Estimate:
     bytes: int
 
 
-def estimate(experiment: Experiment, now: Callable[[], str], keep: Keep = Keep.ALL) -> Estimate:
-    """Let the first robot live, save it in a database that is thrown away, and measure both."""
+def estimate(
+    experiment: Experiment,
+    now: Callable[[], str],
+    keep: Keep = Keep.ALL,
+    robots: Sequence[int] | None = None,
+) -> Estimate:
+    """Let the first robot live, save it in a database that is thrown away, and measure both.
+
+    Args:
+        experiment: robot i is a function of (experiment, i).
+        now: gives the time as ISO text.
+        keep: how much of their lives is to be saved.
+        robots: the numbers of those that are to live; None for all.
+    """
     began = time.perf_counter()
     packed = _packed_life(experiment, keep, 0)
     seconds = time.perf_counter() - began
@@ -200,10 +224,11 @@ def estimate(experiment: Experiment, now: Callable[[], str], keep: Keep = Keep.A
             made_with = dict(zip(sessions, map(_made_with, experiment.conditions), strict=True))
             store.sessions.save_robot(made_with, packed, now())
         size = path.stat().st_size - empty
-    robots, learned = experiment.robots, [spec for spec, _ in experiment.learning(0)]
+    learned = [spec for spec, _ in experiment.learning(0)]
+    count = experiment.robots if robots is None else len(robots)
     trials = sum(len(trials) for run in packed.runs for trials in run.trials.values())
     hours = sum(spec.hours or 0.0 for spec in learned)
-    return Estimate(robots, robots * len(learned), robots * trials, robots * hours, seconds, size)
+    return Estimate(count, count * len(learned), count * trials, count * hours, seconds, size)
 
 
 def _made_with(condition: Condition) -> dict[str, str]:

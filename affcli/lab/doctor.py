@@ -12,6 +12,7 @@ NEEDED = ("numpy", "scipy", "pymunk", "SQLAlchemy", "alembic", "typer", "rich", 
 EXTRAS = {
     "the camera": ("camera", ("opencv-python-headless", "pillow")),
     "figures": ("figures", ("matplotlib",)),
+    "a cluster": ("cluster", ("distributed",)),
     "parquet files": ("parquet", ("pyarrow",)),
 }
 """What only some need: by what it is for, the name of the extra and its packages."""

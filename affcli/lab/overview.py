@@ -2,26 +2,26 @@
 
 from affcli.analysis.overview import Breaking, ExperimentRuns, Overview, breaking_of, goal_counts
 from affcli.analysis.reproduction import Reproduction, failures_in
-from affcli.core.records import LearningRunInfo
+from affcli.core.records import ExperimentInfo, LearningRunInfo
 from affcli.core.specs import Protocol
 from affcli.store import Store
 
 
-def reproduction_of(store: Store, session_id: int, robots: int) -> Reproduction:
-    """Return what the robots of a reproduction gave.
+def reproduction_of(store: Store, session_id: int) -> Reproduction:
+    """Return what the robots of a reproduction gave, as many as are saved.
 
     Args:
         store: open.
         session_id: the reproduction.
-        robots: how many of its robots are saved.
     """
     session = next(one for one in store.sessions.all() if one.id == session_id)
     return Reproduction.of(
         session,
-        robots,
+        store.sessions.saved_robots(session_id),
         store.results.success_counts(session.id),
         store.results.outcome_counts([session.id]),
         store.results.losses(session.id, Protocol.TOOL_ADAPTATION)[0],
+        store.sessions.failed_robots(session_id),
     )
 
 
@@ -44,7 +44,7 @@ def overview_of(store: Store) -> Overview:
         failed.kinds,
         failed.trials,
         [
-            reproduction_of(store, session.id, session.spec.robots)
+            reproduction_of(store, session.id)
             for session in store.sessions.all("reproduce")
             if session.status == "done"
         ],
@@ -57,10 +57,15 @@ def experiments_of(store: Store) -> list[ExperimentRuns]:
     """Return the experiments that have robots, oldest first."""
     learned = store.experiments.learned()
     return [
-        ExperimentRuns(one.name, len(one.conditions), learned[one.name])
+        ExperimentRuns(one.name, len(one.conditions), learned[one.name], _failed(store, one))
         for one in store.experiments.all()
         if one.name in learned
     ]
+
+
+def _failed(store: Store, one: ExperimentInfo) -> tuple[int, ...]:
+    """Return the numbers of the robots of an experiment that failed."""
+    return tuple(robot.robot for robot in store.sessions.failed_robots(one.conditions[0][1]))
 
 
 def _is_twin(store: Store, run: LearningRunInfo) -> bool:

@@ -105,15 +105,15 @@ def content_of(
 
 def _reproduction(store: Store, session: int | None) -> Reproduction | None:
     """Return what the robots of a reproduction gave; of the latest with robots, None without."""
-    saved = {s.id: store.sessions.saved_robots(s.id) for s in store.sessions.all("reproduce")}
-    robots = {number: len(some) for number, some in saved.items() if some}
+    every = (session.id for session in store.sessions.all("reproduce"))
+    robots = [number for number in every if store.sessions.saved_robots(number)]
     if session is None and not robots:
         return None
     number = max(robots) if session is None else session
     if number not in robots:
         known = ", ".join(map(str, robots)) or "none"
         raise UsageError(f"session {session} is no reproduction with robots; there are: {known}")
-    return reproduction_of(store, number, robots[number])
+    return reproduction_of(store, number)
 
 
 def _own(store: Store, numbers: Sequence[int]) -> _Shown | None:

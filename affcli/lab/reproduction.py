@@ -9,6 +9,7 @@ from affcli.lab import conducting, experiment
 from affcli.lab.experiment import ADAPTATION, ADAPTATION_TASKS, Condition, Experiment
 from affcli.lab.run_parts import RunParts
 from affcli.lab.versions import versions
+from affcli.lab.workers import Pool
 from affcli.simulation.tools.paper import TOOL_PARTS
 from affcli.store import Store
 
@@ -58,7 +59,7 @@ def reproduce(
     store: Store,
     what: Reproduced,
     robots: int,
-    workers: int,
+    workers: int | Pool,
     now: Callable[[], str],
     warn: Callable[[str], object] = str,
 ) -> Iterator[int]:
@@ -74,4 +75,4 @@ def reproduce(
     session = store.sessions.begin(what.session(robots), made_with, now())
     yield session
     yield from conducting.conduct(store, whole, [session], range(robots), workers, now, warn)
-    store.sessions.finish(session, now())
+    store.sessions.settle(session, now())

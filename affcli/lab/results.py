@@ -24,7 +24,7 @@ def results_in(store: Store, session: int | None) -> Results:
     """
     found = finished_session(store, session, ["reproduce"])
     if found is not None:
-        return results_of_many(reproduction_of(store, found.id, found.spec.robots))
+        return results_of_many(reproduction_of(store, found.id))
     done = [run for run in store.learning.runs(status="done") if not other_parts(run.spec)]
     latest = {run.spec.tool: run.id for run in done}
     own = set(latest.values())

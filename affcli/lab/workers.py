@@ -18,7 +18,7 @@ from functools import partial
 from multiprocessing.connection import Connection, Pipe, wait
 from queue import SimpleQueue
 from threading import Thread
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from affcli.errors import WorkersDiedError
 
@@ -43,9 +43,95 @@ R = TypeVar("R")
 
 @dataclass(frozen=True, slots=True)
 class Failed:
-    """What stands for the answer of a task that failed, with the error of the last try."""
+    """What stands for the answer of a task that failed.
+
+    Args:
+        error: of the last try.
+        tries: how often the work raised one, or how often the worker died.
+    """
 
     error: Exception
+    tries: int
+
+
+Outcome = tuple[bool, Any] | None
+"""What came of a task once it was begun: whether it was done, and the answer or else the error that
+the work raised; None when its worker died."""
+
+
+class Pool(Protocol):
+    """Who does the work in the place of processes of this machine."""
+
+    def in_order(
+        self, work: Callable[[T], R], tasks: Sequence[T], warn: Callable[[str], object]
+    ) -> Generator[R | Failed, None, None]:
+        """Yield what `work` gives for each task, as `in_order` does."""
+        ...
+
+
+class Ledger:
+    """Which of some tasks is begun next, and what came of each: the rules that all pools share.
+
+    A task whose work raises is tried again, `TRIES` times in all. That its worker died is another
+    thing: it may have been the fault of a neighbour; but not `LOSSES` times. Answers are taken in
+    the order of the tasks, and only a few wait for those before them, so memory stays flat.
+
+    Args:
+        count: how many tasks there are; they go by their numbers.
+    """
+
+    def __init__(self, count: int) -> None:
+        self.again: list[int] = []
+        self._count, self._begun, self._taken = count, 0, 0
+        self._waiting: dict[int, Any] = {}
+        self._raised: Counter[int] = Counter()
+        self._lost: Counter[int] = Counter()
+
+    @property
+    def done(self) -> bool:
+        """Whether all answers are taken."""
+        return self._taken == self._count
+
+    def pop(self) -> list[Any]:
+        """Take the answer that comes next, if it is there; so another task may be begun."""
+        if self._taken not in self._waiting:
+            return []
+        self._taken += 1
+        return [self._waiting.pop(self._taken - 1)]
+
+    def begin(self, workers: int) -> int | None:
+        """Return a task to be begun, the earliest of those to be done again first; None for none.
+
+        Args:
+            workers: how many there are; three times as many tasks may wait for the earliest one.
+        """
+        if self.again:
+            task = min(self.again)
+            self.again.remove(task)
+            return task
+        if self._begun == min(self._count, self._taken + 3 * workers):
+            return None
+        self._begun += 1
+        return self._begun - 1
+
+    def end(self, task: int, outcome: Outcome, died: str = "") -> None:
+        """Note what came of a task that was begun.
+
+        Args:
+            task: its number.
+            outcome: what came of it.
+            died: what to say when its workers have died too often.
+        """
+        succeeded, answer = outcome or (False, WorkersDiedError(died))
+        if succeeded:
+            self._waiting[task] = answer
+            return
+        count, most = (self._lost, LOSSES) if outcome is None else (self._raised, TRIES)
+        count[task] += 1
+        if count[task] < most:
+            self.again.append(task)
+        else:
+            self._waiting[task] = Failed(answer, most)
 
 
 @contextmanager
@@ -84,11 +170,14 @@ def working(
 
 
 def in_order(
-    work: Callable[[T], R], tasks: Sequence[T], workers: int, warn: Callable[[str], object]
+    work: Callable[[T], R], tasks: Sequence[T], workers: int | Pool, warn: Callable[[str], object]
 ) -> Generator[R | Failed, None, None]:
-    """Yield what `work` gives for each task, as `working` does, once."""
-    with working(work, min(workers, len(tasks)), warn) as answers:
-        yield from answers(tasks)
+    """Yield what `work` gives for each task, as `working` does, once; or as another pool does."""
+    if isinstance(workers, int):
+        with working(work, min(workers, len(tasks)), warn) as answers:
+            yield from answers(tasks)
+    else:
+        yield from workers.in_order(work, tasks, warn)
 
 
 def _tried(work: Callable[[T], R], task: T) -> R | Failed:
@@ -100,7 +189,7 @@ def _tried(work: Callable[[T], R], task: T) -> R | Failed:
         except Exception as error:  # noqa: BLE001  # whoever wants the answer judges it
             tries += 1
             if tries == TRIES:
-                return Failed(error)
+                return Failed(error, tries)
 
 
 def start_fault(workers: int) -> str:
@@ -171,35 +260,35 @@ class _Pool:
         warn: Callable[[str], object],
     ) -> None:
         self._workers, self._work, self._tasks, self._warn = workers, work, tasks, warn
-        self._waiting: dict[int, Any] = {}
-        self._again: list[int] = []
-        self._begun = 0
-        self._raised: Counter[int] = Counter()
-        self._lost: Counter[int] = Counter()
+        self._ledger = Ledger(len(tasks))
 
     def answers(self) -> Iterator[Any]:
         """Yield the answers in the order of the tasks."""
-        for number in range(len(self._tasks)):
-            while number not in self._waiting:
-                most = min(len(self._tasks), number + 3 * len(self._workers))
-                for worker in list(self._workers):
-                    if worker.task is None and (self._again or self._begun < most):
-                        self._give(worker)
-                busy = [worker for worker in self._workers if worker.task is not None]
-                if not busy:
-                    continue  # all died before they took a task: others are in their place
-                ready = wait([worker.pipe for worker in busy])
-                for worker in busy:
-                    if worker.pipe in ready:
-                        self._take(worker)
-            yield self._waiting.pop(number)
+        while not self._ledger.done:
+            ready = self._ledger.pop()
+            for worker in list(self._workers):
+                if worker.task is None:
+                    self._give(worker)
+            yield from ready
+            if not ready:
+                self._wait()
+
+    def _wait(self) -> None:
+        """Take what comes next, if anybody does anything.
+
+        Nobody does when all died before they took a task: others are in their place.
+        """
+        busy = [worker for worker in self._workers if worker.task is not None]
+        there = wait([worker.pipe for worker in busy]) if busy else []
+        for worker in busy:
+            if worker.pipe in there:
+                self._take(worker)
 
     def _give(self, worker: _Worker) -> None:
-        """Give the next task to a worker."""
-        if self._again:
-            worker.task = self._again.pop()
-        else:
-            worker.task, self._begun = self._begun, self._begun + 1
+        """Give the next task to a worker, if there is one."""
+        worker.task = self._ledger.begin(len(self._workers))
+        if worker.task is None:
+            return
         try:
             worker.pipe.send(self._tasks[worker.task])
         except GONE:
@@ -207,34 +296,22 @@ class _Pool:
 
     def _take(self, worker: _Worker) -> None:
         """Take an answer from a worker, or note that it died."""
-        task = worker.task
-        if task is None:
+        if worker.task is None:
             return
         try:
-            succeeded, answer = worker.pipe.recv()
+            outcome = worker.pipe.recv()
         except GONE:
             self._replace(worker)
             return
-        worker.task = None
-        self._raised[task] += not succeeded
-        if succeeded:
-            self._waiting[task] = answer
-        elif self._raised[task] < TRIES:
-            self._again.append(task)
-        else:
-            self._waiting[task] = Failed(answer)
+        task, worker.task = worker.task, None
+        self._ledger.end(task, outcome)
 
     def _replace(self, dead: _Worker) -> None:
         """Start another worker in the place of one that died; its task is done again."""
-        task = dead.task
         self._workers.remove(dead)
         _end([dead])
-        if task is not None:
-            self._lost[task] += 1
-            if self._lost[task] < LOSSES:
-                self._again.append(task)
-            else:
-                self._waiting[task] = Failed(WorkersDiedError(DIED))
+        if dead.task is not None:
+            self._ledger.end(dead.task, None, DIED)
         self._warn("a worker process died, perhaps memory ran out; another does its work again")
         new: list[_Worker] = []
         why = _start(new, 1, self._work)
@@ -270,20 +347,28 @@ def serve(pipe: "Connection[Any, Any]") -> None:
     Thread(target=_receive, args=(pipe, tasks), daemon=True).start()
     pipe.send("ready")
     while True:
-        task = tasks.get()
+        outcome = attempt(work, tasks.get())
         try:
-            pipe.send((True, work(task)))
-        except Exception as error:  # noqa: BLE001  # the parent raises it
-            error.add_note(traceback.format_exc())
+            pipe.send(outcome)
+        except Exception as error:  # noqa: BLE001  # an answer that no pipe can carry
             pipe.send((False, _as_sent(error)))
+
+
+def attempt(work: Callable[[T], R], task: T) -> tuple[bool, Any]:
+    """Do a task once; return whether it was done, and the answer or the error that was raised."""
+    try:
+        return True, work(task)
+    except Exception as error:  # noqa: BLE001  # whoever wants the answer judges it
+        return False, _as_sent(error)
 
 
 def _as_sent(error: Exception) -> Exception:
     """Return an error, or what tells of it where it does not come through a pipe."""
+    error.add_note("".join(traceback.format_exception(error)))
     try:
         pickle.loads(pickle.dumps(error))  # noqa: S301  # our own
     except Exception:  # noqa: BLE001  # whatever its class does
-        return RuntimeError("".join(traceback.format_exception(error)))
+        return RuntimeError(error.__notes__[-1])
     return error
 
 

@@ -5,6 +5,7 @@ from statistics import fmean
 from typing import Any, NamedTuple
 
 from affcli.analysis.experiment import Tally
+from affcli.core.records import FailedRobot
 from affcli.report.sheet import Sheet
 from affcli.report.words import clock, many
 
@@ -33,7 +34,7 @@ class Cost(NamedTuple):
     @property
     def whole_seconds(self) -> float:
         """Return how long all robots take on so many workers."""
-        return self.robots * self.seconds / min(self.workers, self.robots)
+        return self.robots * self.seconds / max(min(self.workers, self.robots), 1)
 
     @property
     def whole_bytes(self) -> int:
@@ -75,7 +76,11 @@ def cost_table(name: str, conditions: Sequence[str], cost: Cost) -> Sheet:
 
 
 def experiment_json(
-    name: str, question: str, robots: int, results: Sequence[ConditionResult]
+    name: str,
+    question: str,
+    robots: int,
+    results: Sequence[ConditionResult],
+    failed: Sequence[FailedRobot],
 ) -> dict[str, Any]:
     """Return what an experiment gave as JSON types."""
     return {
@@ -96,13 +101,39 @@ def experiment_json(
             }
             for one in results
         ],
+        "failed": failed_json(failed),
     }
 
 
-def experiment_table(
-    name: str, question: str, robots: int, results: Sequence[ConditionResult]
-) -> Sheet:
-    """Return the mean of the successes under each condition, by kind of trials."""
+def failed_json(failed: Sequence[FailedRobot]) -> list[dict[str, Any]]:
+    """Return the robots that failed as JSON types."""
+    return [
+        {"robot": one.robot, "kind": one.kind, "message": one.message, "tries": one.tries}
+        for one in failed
+    ]
+
+
+def failed_tables(failed: Sequence[FailedRobot]) -> list[Sheet]:
+    """Return a table of the robots that failed; none when none did."""
+    table = Sheet(
+        ("robot", "failed", "tries", "with"),
+        title="Robots that failed",
+        caption="the same command tries them again",
+        left=("failed", "with"),
+    )
+    for one in failed:
+        table.add(str(one.robot), one.kind, str(one.tries), one.message)
+    return [table] if failed else []
+
+
+def experiment_tables(
+    name: str,
+    question: str,
+    robots: int,
+    results: Sequence[ConditionResult],
+    failed: Sequence[FailedRobot],
+) -> list[Sheet]:
+    """Return the mean of the successes under each condition by kind of trials; who failed."""
     kinds = tuple(dict.fromkeys(kind for one in results for kind in one.tallies))
     columns = ("condition", "session", *kinds)
     table = Sheet(
@@ -114,7 +145,7 @@ def experiment_table(
     for one in results:
         cells = (_cell(one.tallies.get(kind)) for kind in kinds)
         table.add(one.name, str(one.session), *cells)
-    return table
+    return [table, *failed_tables(failed)]
 
 
 def _cell(tally: Tally | None) -> str:

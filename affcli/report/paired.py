@@ -102,6 +102,10 @@ def _conditions_table(result: Comparison) -> Sheet:
     tests = [sum(not one.agree for one in result.totals)] + [len(result.cells)] * bool(result.cells)
     notes = [note.format(tests=" and ".join(map(str, tests))) for note in METHOD]
     notes += ["left out: not in both, or not with as many trials"] * left_out
+    for one in (result.against, *result.others):
+        if one.failed:
+            names = f"{many(len(one.failed), 'robot')} of {one.name}: {ranges(one.failed)}"
+            notes.append(f"failed, so in no pair: {names}")
     for name, cells in result.unshared.items():
         words = "; ".join(map(whole_words, cells))
         notes.append(f"in {name} alone or in {result.against.name} alone: {words}")
@@ -219,6 +223,7 @@ def _condition_json(one: ConditionCounts) -> dict[str, Any]:
         "session": one.session.id,
         "seed": spec.seed,
         "robots": len(one.robots),
+        "failed": list(one.failed),
         "what": run_words(spec),
     }
 

@@ -19,6 +19,7 @@ from affcli.analysis.paper import (
 )
 from affcli.analysis.reproduction import Reproduction, Solved
 from affcli.analysis.statistics import ENOUGH_ROBOTS, Spread
+from affcli.report.experiment import failed_json, failed_tables
 from affcli.report.sheet import Sheet
 from affcli.report.words import (
     few_robots_note,
@@ -59,6 +60,7 @@ def reproduction_json(result: Reproduction) -> dict[str, Any]:
         "trials": result.trials,
         "invalid": result.invalid,
         "tries_on_lost": result.tries_on_lost,
+        "failed": failed_json(result.failed),
     }
 
 
@@ -85,6 +87,7 @@ def reproduction_tables(result: Reproduction) -> list[Sheet]:
         *([_totals_table(result)] if result.totals or result.broken else []),
         *([_others_table(result)] if result.others else []),
         failures_table(result.failures, result.trials, result.invalid),
+        *failed_tables(result.failed),
     ]
 
 

@@ -163,4 +163,5 @@ def experiment_words(one: ExperimentRuns) -> str:
     name = one_line(one.experiment)
     command = f"compare {shlex.quote(name)}" if one.conditions > 1 else "runs list --all-runs"
     runs = many(one.learning_runs, "learning run")
-    return f"{runs} of robots of the experiment {name}: affcli {command}"
+    failed = f" ({many(len(one.failed), 'robot')} failed)" if one.failed else ""
+    return f"{runs} of robots of the experiment {name}{failed}: affcli {command}"

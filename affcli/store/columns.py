@@ -32,6 +32,9 @@ COLUMNS: dict[str, tuple[str, ...]] = {
         *("key", "kind", "seed", "robots", *_PARTS, "planner", "task_set"),
         *("experiment_id", "condition"),
     ),
+    "failed_robot": (
+        *("session_id", "robot", "kind", "message", "traceback", "tries", "failed_at"),
+    ),
     "learning_run": (
         *("session_id", "key", "tool", "tool_key", "seed", "robot", "hours", "behaviors_limit"),
         *_PARTS,

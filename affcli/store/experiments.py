@@ -13,7 +13,7 @@ from affcli.core.specs import Keep, SessionSpec
 from affcli.errors import UsageError, one_line
 from affcli.store import reading, rows
 from affcli.store.connection import Database, insert_one, mappings, tuples
-from affcli.store.tables import experiment, learning_run, session, trial
+from affcli.store.tables import experiment, failed_robot, learning_run, session, trial
 
 Conditions = Sequence[tuple[str, SessionSpec, Mapping[str, str]]]
 """The name, the session and the versions of each condition, in order."""
@@ -120,7 +120,7 @@ class Experiments:
             )
 
     def finish(self, experiment_id: int, now: str) -> None:
-        """Mark an experiment and its sessions as done if all its robots are there; see `settle`."""
+        """Mark an experiment and its sessions as done if all its robots are; see `settle`."""
         with self.database.writing() as connection:
             settle(connection, sessions_of(connection, experiment_id), now)
 
@@ -157,15 +157,18 @@ def sessions_of(connection: sa.Connection, number: int) -> list[dict[str, Any]]:
 
 
 def settle(connection: sa.Connection, sessions: Sequence[Mapping[str, Any]], now: str) -> None:
-    """Mark as done what has all its robots, and as running what has not.
+    """Mark as done what has all its robots, alive or failed, and as running what has not.
 
     Args:
         connection: in a transaction, in which the robots are counted, too.
         sessions: the rows of all sessions of an experiment, or of a reproduction.
         now: ISO text, UTC.
     """
-    robots = sa.select(sa.func.count(trial.c.robot.distinct()))
-    count = connection.scalar(robots.where(trial.c.session_id == sessions[0]["id"]))
+    first = sessions[0]["id"]
+    robots = sa.union(
+        *(sa.select(t.c.robot).where(t.c.session_id == first) for t in (trial, failed_robot))
+    )
+    count = connection.scalar(sa.select(sa.func.count()).select_from(robots.subquery()))
     state = (
         {"status": "done", "finished_at": now}
         if count == sessions[0]["robots"]

@@ -88,6 +88,9 @@ UNFINISHED = {
         SELECT 'run ' || id FROM learning_run WHERE status <> 'done'""",
     "every session is finished": """
         SELECT 'session ' || id || ' (' || kind || ')' FROM session WHERE status <> 'done'""",
+    "every robot lived": """
+        SELECT 'robot ' || robot || ' of session ' || session_id || ' (' || kind || ')'
+        FROM failed_robot""",
     "every trial is finished": "SELECT 'trial ' || id FROM trial WHERE outcome IS NULL",
     "every verification is finished": """
         SELECT 'verification ' || id FROM verification WHERE verdict IS NULL""",

@@ -18,10 +18,12 @@ from affcli.store.experiments import sessions_of, settle
 from affcli.store.learning import COUNTERS
 from affcli.store.opening import Store, open_store
 from affcli.store.replacing import replacing
+from affcli.store.sessions import forget_failure
 from affcli.store.tables import (
     affordance,
     behavior,
     experiment,
+    failed_robot,
     learning_run,
     session,
     step,
@@ -73,11 +75,13 @@ class _Many:
         what: which, for messages.
         sessions: those of its conditions in the target, in order.
         lives: where each robot is, by its number: one place at least.
+        failed: the notes on those that failed in some place.
     """
 
     what: str
     sessions: tuple[int, ...]
     lives: dict[int, list["_Life"]] = field(default_factory=dict)
+    failed: dict[int, Row] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,6 +263,8 @@ class _Merging:
         for robot, own in runs.items():
             life = _Life(source, path, ids, robot, tuple(own))
             many.lives.setdefault(robot, []).append(life)
+        for row in mappings(source, sa.select(failed_robot).filter_by(session_id=ids[0])):
+            many.failed.setdefault(row["robot"], row)
 
     def bring(self, progress: Callable[[int, int], object]) -> Merged:
         """Copy the robots that are not there; mark as done what has all its robots."""
@@ -273,10 +279,22 @@ class _Merging:
             new += self._bring(many, life)
             progress(number, len(lives))
         for many in self._many.values():
+            self._note_failed(many)
             wanted = sa.select(session).where(session.c.id.in_(many.sessions))
             settle(self._connection, mappings(self._connection, wanted), self._now)
         left_out = {what: count for what, count in self._left_out.items() if count}
         return Merged(new, len(lives) - new, left_out)
+
+    def _note_failed(self, many: _Many) -> None:
+        """Note which robots failed that live nowhere."""
+        first = many.sessions[0]
+        known = sa.union(
+            *(sa.select(t.c.robot).where(t.c.session_id == first) for t in (trial, failed_robot))
+        )
+        here = set(self._connection.scalars(known))
+        for robot in sorted(many.failed.keys() - here):
+            row = {**many.failed[robot], "session_id": first}
+            self._connection.execute(sa.insert(failed_robot).values(row))
 
     def _bring(self, many: _Many, life: _Life) -> bool:
         """Copy a robot; of one that is there make sure that it is the same, and return False."""
@@ -300,6 +318,7 @@ class _Merging:
     def _copy(self, many: _Many, life: _Life) -> None:
         """Copy a whole robot."""
         sessions = dict(zip(life.sessions, many.sessions, strict=True))
+        forget_failure(self._connection, many.sessions[0], life.robot)
         runs, rows, trials = {}, {}, {}
         for row in life.learned():
             own = {**_without(row, "id"), "session_id": sessions[row["session_id"]]}

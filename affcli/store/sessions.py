@@ -1,18 +1,19 @@
 """Sessions: commands that produced trials; those of experiments, with the lives of their robots."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import sqlalchemy as sa
 
-from affcli.core.records import SessionInfo
+from affcli.core.records import FailedRobot, SessionInfo
 from affcli.core.specs import REPRODUCE, RobotRecord, SessionSpec
 from affcli.store import reading, rows
-from affcli.store.connection import Database, insert_many, insert_one, numbered
+from affcli.store.connection import Database, insert_many, insert_one, mappings, numbered
+from affcli.store.experiments import settle
 from affcli.store.learning import insert_run
 from affcli.store.packing import PackedRobot, pack_robot
-from affcli.store.tables import affordance, behavior, session, trial
+from affcli.store.tables import affordance, behavior, failed_robot, session, trial
 from affcli.store.trials import insert_trials
 
 
@@ -63,11 +64,45 @@ class Sessions:
                 .values(status="done", finished_at=now)
             )
 
+    def settle(self, session_id: int, now: str) -> None:
+        """Mark a reproduction as done if all its robots are; see `affcli.store.experiments`."""
+        with self.database.writing() as connection:
+            wanted = sa.select(session).filter_by(id=session_id)
+            settle(connection, mappings(connection, wanted), now)
+
     def saved_robots(self, session_id: int) -> frozenset[int]:
         """Return the numbers of the robots that a session has saved already."""
         wanted = sa.select(trial.c.robot).distinct().where(trial.c.session_id == session_id)
         with self.database.reading() as connection:
             return frozenset(connection.scalars(wanted))
+
+    def failed_robots(self, session_id: int) -> tuple[FailedRobot, ...]:
+        """Return the robots of a session that failed; of an experiment's all that did in it."""
+        first = sa.select(sa.func.min(session.c.id)).where(
+            session.c.experiment_id
+            == sa.select(session.c.experiment_id).filter_by(id=session_id).scalar_subquery()
+        )
+        owner = sa.func.coalesce(first.scalar_subquery(), session_id)
+        wanted = sa.select(failed_robot).where(failed_robot.c.session_id == owner)
+        return tuple(
+            FailedRobot(*(row[name] for name in ("robot", "kind", "message", "tries", "traceback")))
+            for row in self.database.mappings(wanted.order_by(failed_robot.c.robot))
+        )
+
+    def save_failure(self, session_id: int, failed: FailedRobot, now: str) -> None:
+        """Note that a robot failed, in the place of an earlier note; not if it lives by now.
+
+        Args:
+            session_id: of the first condition.
+            failed: who, and what went wrong.
+            now: ISO text, UTC.
+        """
+        with self.database.writing() as connection:
+            forget_failure(connection, session_id, failed.robot)
+            is_there = sa.select(trial.c.id).filter_by(session_id=session_id, robot=failed.robot)
+            if connection.execute(is_there.limit(1)).first() is None:
+                row = {**asdict(failed), "session_id": session_id, "failed_at": now}
+                connection.execute(sa.insert(failed_robot).values(row))
 
     def save_robot(
         self,
@@ -93,6 +128,7 @@ class Sessions:
             is_there = sa.select(trial.c.id).filter_by(session_id=ids[0], robot=packed.robot)
             if connection.execute(is_there.limit(1)).first() is not None:
                 return False
+            forget_failure(connection, ids[0], packed.robot)
             for run in packed.runs:
                 owner = ids[min(run.trials)]
                 row = {
@@ -110,6 +146,11 @@ class Sessions:
                 for condition, trials in run.trials.items():
                     insert_trials(connection, ids[condition], run_id, trials, rows_of)
             return True
+
+
+def forget_failure(connection: sa.Connection, session_id: int, robot: int) -> None:
+    """Delete the note that a robot failed, if there is one."""
+    connection.execute(sa.delete(failed_robot).filter_by(session_id=session_id, robot=robot))
 
 
 def _affordance_ids(connection: sa.Connection, run_id: int) -> dict[int, int]:

@@ -11,6 +11,7 @@ TABLES = {
 tool = TABLES["tool"]
 experiment = TABLES["experiment"]
 session = TABLES["session"]
+failed_robot = TABLES["failed_robot"]
 learning_run = TABLES["learning_run"]
 behavior = TABLES["behavior"]
 affordance = TABLES["affordance"]

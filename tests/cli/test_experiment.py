@@ -1,6 +1,7 @@
 """``affcli experiment``: what it says before, while and after robots live."""
 
 import re
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -8,11 +9,13 @@ import pytest
 
 from affcli.cli import terminal
 from affcli.core.specs import Keep
+from affcli.lab import conducting
 from affcli.lab.conducting import begin, run
 from affcli.lab.definition import experiment_file
 from affcli.store import open_store
-from tests.cli.program import contents, done, ending, names_in, refused, rows, started
+from tests.cli.program import affcli, contents, done, ending, names_in, refused, rows, started
 from tests.lab.quick import now, taken
+from tests.lab.test_experiment import fail
 
 TEXT = """
 [experiment]
@@ -78,6 +81,29 @@ def test_its_json_has_each_robots_successes(file: Path, lived: Path) -> None:
             }
 
 
+def test_a_robot_that_failed_is_named_and_tried_again(
+    file: Path, lived: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "failed.db"
+    words = ("experiment", file, "--workers", "1", "--db", path)
+    with monkeypatch.context() as changed:
+        changed.setattr(conducting, "_packed_life", partial(fail, frozenset({0})))
+        ended = affcli(*words)
+    assert ended.code == 4
+    assert re.search(
+        r"^ +0 +SimulationDivergedError +3 +too stiff; soften it$", ended.out, re.MULTILINE
+    )
+    assert ended.err.splitlines() == [
+        f"experiment two: 1 of 2 robots, saved in {path}",
+        "failed: robot 0; the same command tries again",
+    ]
+    assert "of the experiment two (1 robot failed): affcli" in done("report", "--db", path).out
+    assert "robot 0 of session 1 (Sim" in done("db", "check", "--json", "--db", path).out
+    assert done(*words, "--json").result["failed"] == []
+    count = "SELECT robot, count(*), sum(steps) FROM trial GROUP BY robot"
+    assert rows(path, count) == rows(lived, count)
+
+
 def test_its_conditions_are_compared_by_its_name(lived: Path, tmp_path: Path) -> None:
     by_name, by_session = (
         done("compare", *words, "--json", "--db", lived).result
@@ -118,6 +144,8 @@ def test_a_dry_run_says_what_it_takes_and_saves_nothing(file: Path, tmp_path: Pa
     assert value["conditions"] == ["paper", "rough"]
     assert value["estimated_bytes"] == 2 * value["measured"]["bytes"] > 0
     assert value["estimated_seconds"] == value["measured"]["seconds"] > 0.0
+    value = done(*words, "--shard", "2/2", "--json", cwd=tmp_path).result
+    assert (value["robots"], value["learning_runs"], value["trials"]) == (1, 2, 64)
     assert names_in(tmp_path) == ["two.toml"]
 
 
@@ -152,7 +180,7 @@ def test_other_commands_name_the_experiment(lived: Path, tmp_path: Path) -> None
     words = "4 learning runs of robots of the experiment two: affcli compare two"
     assert done("report", "--db", lived).out == f"{words}\n"
     assert done("report", "--json", "--db", lived).result["experiments"] == [
-        {"experiment": "two", "conditions": 2, "learning_runs": 4}
+        {"experiment": "two", "conditions": 2, "learning_runs": 4, "failed": []}
     ]
     page = tmp_path / "page.html"
     line = refused(2, "report", "--html", page, "--db", lived)

@@ -5,15 +5,17 @@ import sqlalchemy as sa
 
 from affcli.analysis.paired import summed
 from affcli.analysis.power import Untold
+from affcli.core.records import FailedRobot
 from affcli.core.results import Cell
 from affcli.errors import UsageError
 from affcli.lab.conditions import compared, counts_of, planned, sessions_named
 from affcli.lab.courses import curves_of
+from affcli.report.paired import comparison_tables
 from affcli.store import Store
 from affcli.store.columns import COLUMNS
 from affcli.store.tables import trial
 from tests.store.conditions import SECOND, stored_conditions
-from tests.store.records import begun
+from tests.store.records import NOW, begun
 
 REACH, ADAPTATION, TASKS = "extension of reach", "tool adaptation", "extension-of-reach"
 ALL = Cell(REACH, TASKS)
@@ -33,6 +35,17 @@ def test_what_each_robot_solved_of_each_cell(store: Store) -> None:
     by_start = summed(counts, ("start",))
     assert by_start[ALL._replace(start="2")] == {r: (2, int(r >= SECOND)) for r in range(8)}
     assert list(summed(counts)) == [ALL, Cell(ADAPTATION, TASKS)]
+
+
+def test_robots_that_failed_are_in_no_pair_and_named(store: Store) -> None:
+    conditions = sessions_named(store, stored_conditions(store))
+    first = conditions[0].session.id
+    for robot in (8, 9):
+        store.sessions.save_failure(first, FailedRobot(robot, "ValueError", "no", 3), NOW)
+    result = compared(store, conditions, None, ["tool"])
+    assert (result.against.failed, result.others[0].failed) == ((8, 9), ())
+    notes = str(comparison_tables(result)[-1].caption)
+    assert f"failed, so in no pair: 2 robots of {conditions[0].name}: 8 to 9" in notes
 
 
 def test_robots_of_any_number_are_counted(store: Store) -> None:

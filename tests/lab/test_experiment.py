@@ -1,13 +1,15 @@
 """Many robots under several conditions: paired, each once, the same however they are run."""
 
 import shutil
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Callable, Generator, Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from affcli.core.records import FailedRobot
 from affcli.core.row_filter import RowFilter
 from affcli.core.specs import Keep, Protocol, RobotRecord
 from affcli.errors import DatabaseError, SimulationDivergedError, UsageError
@@ -17,6 +19,7 @@ from affcli.lab.definition import experiment_of
 from affcli.lab.experiment import Experiment, one_robot
 from affcli.lab.reproduction import Reproduced
 from affcli.lab.table import listed_rows
+from affcli.lab.workers import Failed
 from affcli.store import (
     PackedRobot,
     Store,
@@ -303,17 +306,45 @@ def test_a_robot_that_fails_does_not_keep_the_others_from_living(
     info = begin(store, WHAT, now)
     with monkeypatch.context() as changed:
         changed.setattr(conducting, "_packed_life", partial(fail, frozenset({1})))
-        told = run(store, WHAT, info, 1, now)
-        assert [next(told) for _ in range(3)] == [0, 1, 2]
-        words = r"^robot 1: too stiff; soften it; what the others did is saved, and the same"
-        with pytest.raises(SimulationDivergedError, match=words):
-            next(told)
-    assert store.sessions.saved_robots(info.conditions[0][1]) == {0, 2}
-    assert store.experiments.named("three").status == "running"
+        assert list(run(store, WHAT, info, 1, now)) == [0, 1, 2]
+    sessions = [session for _, session in info.conditions]
+    noted = (FailedRobot(1, "SimulationDivergedError", "too stiff; soften it", 3),)
+    assert [store.sessions.failed_robots(one) for one in sessions] == [noted] * 3
+    assert store.sessions.saved_robots(sessions[0]) == {0, 2}
+    assert store.experiments.named("three").status == "done"  # nothing is left that was not tried
+    (unfinished,) = (finding for finding in check(store.path) if finding.unfinished)
+    assert unfinished.example == "robot 1 of session 1 (SimulationDivergedError)"
     assert run_all(store) == [2, 3]
+    assert store.sessions.failed_robots(sessions[0]) == ()
     run_all(another_store)
     count = "select robot, count(*), sum(steps) from trial group by robot"
     assert run_sql(store.path, count).rows == run_sql(another_store.path, count).rows
+
+
+@dataclass(frozen=True)
+class Pool:
+    """Gives answers that are made already."""
+
+    answers: Sequence[Any]
+
+    def in_order(
+        self, work: Callable[[Any], Any], tasks: Sequence[Any], warn: Callable[[str], object]
+    ) -> Generator[Any, None, None]:
+        yield from self.answers
+
+
+def test_a_bug_is_noted_with_its_traceback(store: Store, life: RobotRecord) -> None:
+    what = replace_head(robots=2)
+    info = begin(store, what, now)
+    lives = [Failed(ZeroDivisionError("one\nby zero"), 3), pack_robot(life)]
+    assert list(run(store, what, info, Pool(lives), now)) == [0, 1]
+    (failed,) = store.sessions.failed_robots(info.conditions[2][1])
+    assert (failed.robot, failed.kind, failed.message) == (
+        *(0, "ZeroDivisionError"),
+        "one\\nby zero",
+    )
+    ((noted,),) = run_sql(store.path, "select traceback from failed_robot").rows
+    assert str(noted).endswith("ZeroDivisionError: one\nby zero\n")
 
 
 def test_where_the_first_robots_all_fail_the_others_are_not_tried(

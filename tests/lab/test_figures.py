@@ -163,7 +163,7 @@ def test_results_of_a_reproduction(store: Store) -> None:
     with pytest.raises(UsageError, match="session 1 is not finished; give the same affcli reprod"):
         results_in(store, 1)
     counted(reproducing(store, LEISURELY, 2, 0))
-    result, results = reproduction_of(store, 1, 2), results_in(store, None)
+    result, results = reproduction_of(store, 1), results_in(store, None)
     assert {cell: list(beside.counts) for cell, beside in results.cells.items()} == result.cells
     assert results.total is not None
     assert list(results.total.counts) == result.totals

@@ -95,9 +95,9 @@ def counts() -> list[SuccessCount]:
 
 
 OUTCOMES = {Outcome.SOLVED: 300, Outcome.NO_ROW: 12}
-REPRODUCTION = Reproduction.of(session_of(5, robots=3), 3, counts(), OUTCOMES, 7)
+REPRODUCTION = Reproduction.of(session_of(5, robots=3), range(3), counts(), OUTCOMES, 7)
 OTHERWISE = Reproduction.of(
-    session_of(6, robots=3, planner=LOOKAHEAD, binding=GRASP_HIGH), 3, counts(), OUTCOMES, 7
+    session_of(6, robots=3, planner=LOOKAHEAD, binding=GRASP_HIGH), range(3), counts(), OUTCOMES, 7
 )
 """The same counts of robots that held and chose otherwise than the paper's."""
 

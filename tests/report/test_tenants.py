@@ -94,7 +94,7 @@ def test_cells_that_no_robot_tried_are_neither_0_nor_summed() -> None:
     """A total stands beside the paper's 69 of 80 only when there are 80."""
     some = [one for one in tenants.counts() if (one.tool, one.goal) != ("stick", "2")]
     some = [one for one in some if one.tool not in ("l-stick", "rake")]
-    result = Reproduction.of(session_of(5, robots=3), 3, some, tenants.OUTCOMES, 7)
+    result = Reproduction.of(session_of(5, robots=3), range(3), some, tenants.OUTCOMES, 7)
     assert set(result.cells) == {
         cell for cell in EXTENSION_OF_REACH if cell != ("stick", "2") and cell[0] != "l-stick"
     }

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from affcli.core.records import FailedRobot
 from affcli.core.specs import Counters
 from affcli.errors import DatabaseError, UsageError
 from affcli.lab.conducting import begin, run
@@ -72,6 +73,22 @@ def test_ten_shards_are_the_whole(shards: list[Path], whole: Path, tmp_path: Pat
     assert told == [(number, 10) for number in range(1, 11)]
     assert contents(tmp_path / "all.db") == contents(whole)
     assert [finding for finding in check(tmp_path / "all.db") if finding.wrong] == []
+
+
+def test_a_robot_that_failed_here_and_lives_there_lives(shards: list[Path], tmp_path: Path) -> None:
+    path, into = tmp_path / "some.db", tmp_path / "all.db"
+    path.write_bytes(shards[0].read_bytes())
+    with opened(path) as store:
+        for robot in (1, 2):
+            store.sessions.save_failure(1, FailedRobot(robot, "ValueError", "no", 3), NOW)
+    merge([path, shards[1]], into, NOW)
+    with opened(into) as store:
+        assert [one.robot for one in store.sessions.failed_robots(1)] == [2]
+    merge([path, shards[2]], into, NOW)
+    with opened(into) as store:
+        assert store.sessions.failed_robots(1) == ()
+        store.sessions.save_failure(1, FailedRobot(1, "ValueError", "no", 3), NOW)
+        assert store.sessions.failed_robots(1) == ()  # it lives
 
 
 def test_a_merge_again_and_bit_by_bit_changes_nothing(
