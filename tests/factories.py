@@ -37,7 +37,8 @@ EXTEND_5 = BehaviorCall.of(EXTEND_ARM, {"offset_distance": 5.0})
 EXACT = settings_with({"sensor": {"position_noise": 0, "color_noise": 0}}, "a test")
 """A sensor without noise."""
 
-UNITS = {"", "in", "in/s", "in/s^2", "s", "kg", "degrees", "of 255", "mm", "1/mm^2", "px"}
+UNITS = {"", "in", "in/s", "in/s^2", "s", "kg", "degrees", "degrees/s", "degrees/s^2"}
+UNITS |= {"of 255", "mm", "1/mm^2", "px"}
 """In which settings and parameters are told; empty for a count or a share."""
 
 EIGHTH = 0.125

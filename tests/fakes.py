@@ -103,7 +103,12 @@ class FakeRobot:
         """The calls executed, without observations."""
         return [call for call, _ in self.executed]
 
-    def reaches(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.bool_]:
+    def reaches(
+        self,
+        x: NDArray[np.float64],
+        y: NDArray[np.float64],
+        angle: NDArray[np.float64] | float = 0.0,
+    ) -> NDArray[np.bool_]:
         places = map(Point, x.tolist(), y.tolist())
         return np.array([self.reachable(place) for place in places], dtype=bool)
 

@@ -240,11 +240,14 @@ def test_a_tool_is_known_by_its_value_and_not_by_its_name() -> None:
 
 
 def specs(tool: str, binding: str) -> LearningSpec:
-    """Return a run with every behavior there is, each parameter at its default and its limits."""
+    """Return a run with every behavior there is: its parameters at their limits, and in between."""
     texts = list(registry.DEFAULTS["repertoire"].split())
     for part in registry.parts("behaviors").values():
-        for name, param in part.params.items():
-            texts += [f"{part.name}:{name}={value}" for value in (*limits(param), 3.0)]
+        for ends in zip(*map(limits, part.params.values()), strict=True):
+            given = zip(part.params, ends, strict=True)
+            texts.append(f"{part.name}:{','.join(f'{name}={value}' for name, value in given)}")
+        if part.params:
+            texts.append(f"{part.name}:{','.join(f'{name}=3' for name in part.params)}")
     return RunParts.chosen(SETTINGS, repertoire=texts, binding=binding).spec(tool, 3, 0, None, 1)
 
 

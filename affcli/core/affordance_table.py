@@ -27,6 +27,7 @@ class AffordanceTable:
     Attributes:
         movement_x, movement_y, movement_z: expected movement of each row (n,), in, table frame.
         offset_x, offset_y: attractor as seen from the wrist at the start of each row (n,), in.
+        wrist_angle: the wrist's angle at the start of each row (n,), rad.
         times_used, times_successful: the counters (n,), int64.
         probable: whether the replication probability is greater than 1/2 (n,), kept up to date.
     """
@@ -37,6 +38,7 @@ class AffordanceTable:
         offsets = np.array([row.start.wrist_to_object for row in self._rows]).reshape(-1, 2)
         self.movement_x, self.movement_y, self.movement_z = np.ascontiguousarray(movements.T)
         self.offset_x, self.offset_y = np.ascontiguousarray(offsets.T)
+        self.wrist_angle = np.array([row.wrist_angle for row in self._rows], dtype=np.float64)
         self.times_used = np.array([row.times_used for row in self._rows], dtype=np.int64)
         self.times_successful = np.array(
             [row.times_successful for row in self._rows], dtype=np.int64

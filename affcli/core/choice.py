@@ -13,9 +13,11 @@ from affcli.core.geometry import Pose
 from affcli.core.goal import Goal
 from affcli.core.observation import Observation
 
-Reaches = Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.bool_]]
-"""Tells for each wrist position (n,), (n,) (in, table frame) whether the arm can set the tool down
-there."""
+Reaches = Callable[
+    [NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]], NDArray[np.bool_]
+]
+"""Tells for each wrist position (n,), (n,) (in, table frame), at an angle (n,) (rad), whether the
+arm can set the tool down there."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ row carries the wrist's angle, and position wrist restores it; at an equal angle
 the same.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,6 +25,17 @@ class Slide:
 
     dx: float
     dy: float
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """Turn the tool on the table about the wrist, which stays.
+
+    Args:
+        degrees: by how much, counter-clockwise.
+    """
+
+    degrees: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,8 +60,22 @@ class Wait:
     seconds: float
 
 
-Segment = Slide | Carry | Wait
+Segment = Slide | Turn | Carry | Wait
 Motion = tuple[Segment, ...]
+
+
+def turned_by(motion: Motion) -> tuple[float, ...]:
+    """Return how far the wrist is turned at the beginning of a motion and after each turn (rad).
+
+    Counted from the angle that it begins at; a carry ends the count.
+    """
+    angles = [0.0]
+    for segment in motion:
+        if isinstance(segment, Carry):
+            break
+        if isinstance(segment, Turn):
+            angles.append(angles[-1] + math.radians(segment.degrees))
+    return tuple(angles)
 
 
 def motion_json(motion: Motion) -> list[list[Any]]:
@@ -65,6 +91,8 @@ def motion_from_json(value: Any) -> Motion:
         match kind, given:
             case "slide", [dx, dy]:
                 made.append(Slide(dx, dy))
+            case "turn", [degrees]:
+                made.append(Turn(degrees))
             case "carry", [x, y, angle]:
                 made.append(Carry(Pose(x, y, angle)))
             case "wait", [seconds]:
@@ -79,6 +107,8 @@ def _segment_json(segment: Segment) -> list[Any]:
     match segment:
         case Slide(dx, dy):
             return ["slide", dx, dy]
+        case Turn(degrees):
+            return ["turn", degrees]
         case Carry(to):
             return ["carry", *to]
         case Wait(seconds):

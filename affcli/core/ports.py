@@ -54,8 +54,15 @@ class Robot(Protocol):
             SimulationDivergedError: the world gave a number that is not finite.
         """
 
-    def reaches(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Tell for each wrist position (n,), (n,) (in, table frame) whether the arm reaches it."""
+    def reaches(
+        self,
+        x: NDArray[np.float64],
+        y: NDArray[np.float64],
+        angle: NDArray[np.float64] | float = 0.0,
+    ) -> NDArray[np.bool_]:
+        """Tell for each wrist position (n,), (n,) (in, table frame) whether the arm reaches it with
+        the wrist at an angle (rad): one for all, or one each (n,).
+        """
 
 
 class Sensor(Protocol):
@@ -76,7 +83,9 @@ class Experimenter(Protocol):
     """The person of §6 who sees the whole table and serves the robot; it takes no robot time."""
 
     def attractor_out_of_reach(self) -> bool:
-        """Tell whether no behavior from any wrist position can touch the attractor."""
+        """Tell whether no behavior can touch the attractor from any wrist position that babbling
+        sets the tool down at.
+        """
 
     def put_attractor_back(self) -> None:
         """Put the attractor at a new random position within the tool's reach."""

@@ -158,6 +158,14 @@ class MotionTiming:
     transfer_acceleration: float = setting(
         20.0, "in/s^2", "Wrist acceleration with the tool lifted."
     )
+    turn_speed: float = setting(
+        90.0,
+        "degrees/s",
+        "Speed of the wrist's roll with the tool lifted. Choice: it hardly adds to the way.",
+    )
+    turn_acceleration: float = setting(
+        180.0, "degrees/s^2", "Acceleration of the wrist roll with the tool lifted."
+    )
     lift_speed: float = setting(4.0, "in/s", "Speed of lifting and lowering the tool.")
     hold: float = setting(
         0.25,

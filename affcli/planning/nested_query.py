@@ -49,7 +49,7 @@ def wrist_within_reach(
     for block in blocks(len(rows)):
         x = seen.object_x - of(table.offset_x, rows, block)
         y = seen.object_y - of(table.offset_y, rows, block)
-        reached[block] = reaches(x, y)
+        reached[block] = reaches(x, y, of(table.wrist_angle, rows, block))
     return those(rows, reached)
 
 

@@ -65,7 +65,8 @@ def _situation_for(
     for _ in range(MOST_PLACES):
         experimenter.put_attractor_for(row)
         seen = sensor.observe()
-        if robot.reaches(*(np.array([c]) for c in seen.wrist_for(offset))).all():
+        x, y = (np.array([c]) for c in seen.wrist_for(offset))
+        if robot.reaches(x, y, row.wrist_angle).all():
             return seen
     raise BadInputError(
         f"row {row.step} ({row.exploratory}): {MOST_PLACES} places in a row were out of the arm's "

@@ -73,7 +73,7 @@ def call_words(call: BehaviorCall) -> str:
     """Return a behavior with its parameters; inches have no unit, degrees do: ``turn wrist 30
     deg``.
     """
-    values = (f"{v:g} deg" if name.endswith("angle") else f"{v:g}" for name, v in call.params)
+    values = (f"{v:g} deg" if _is_turn(name) else f"{v:g}" for name, v in call.params)
     return one_line(" ".join([call.name, *values]), 60)
 
 
@@ -85,8 +85,13 @@ def call_title(call: BehaviorCall) -> str:
 def parameter_words(call: BehaviorCall) -> str:
     """Return a behavior's parameters with their units: ``2 in``, or ``30 deg`` for an angle."""
     return ", ".join(
-        f"{value:g} {'deg' if name.endswith('angle') else 'in'}" for name, value in call.params
+        f"{value:g} {'deg' if _is_turn(name) else 'in'}" for name, value in call.params
     )
+
+
+def _is_turn(param: str) -> bool:
+    """Tell whether a parameter is told in degrees: by its name, for a record has no units."""
+    return param.endswith(("angle", "direction"))
 
 
 def reason_words(reason: Reason) -> str:

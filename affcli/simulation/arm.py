@@ -1,21 +1,23 @@
 """Kinematics of the five-axis arm with its wrist perpendicular to the table (§4, §5).
 
 Joints: waist (about z), shoulder, elbow, wrist pitch (all about the same horizontal axis) and wrist
-roll. The wrist perpendicular to the table fixes the pitch; the roll undoes the waist, so the tool
-keeps its orientation in the table frame.
+roll. The wrist perpendicular to the table fixes the pitch; the roll undoes the waist and adds the
+angle at which the tool is to lie in the table frame.
 """
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
-from affcli.core.geometry import Point
+from affcli.core.geometry import Point, Pose
 from affcli.core.workspace import ArmGeometry
 from affcli.errors import BadInputError
 
 WRIST_PITCH_MAX = math.radians(110.0)
 """Published range of the arm's fourth axis, to both sides."""
+WRIST_ROLL_MAX = math.radians(180.0)
+"""Published range of the arm's fifth axis, to both sides. Choice: 0 is the tool straight ahead."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,26 +38,55 @@ class JointAngles:
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """The wrist positions the arm can hold at one height: part of a ring (in)."""
+    """The wrist positions the arm can hold at one height: part of a ring (in).
+
+    Args:
+        inner, outer: radii about the shoulder (in).
+        waist_min, waist_max: how far the waist turns to the right and to the left (rad, positive to
+            the left).
+    """
 
     inner: float
     outer: float
+    waist_min: float
     waist_max: float
 
     def holds(self, point: Point) -> bool:
         """Tell whether the ring holds `point` (in, table frame)."""
         radius = math.hypot(point.x, point.y)
-        bearing = abs(math.atan2(-point.x, point.y))
-        return self.inner <= radius <= self.outer and bearing <= self.waist_max
+        bearing = math.atan2(-point.x, point.y)
+        within = self.waist_min <= bearing <= self.waist_max
+        return within and self.inner <= radius <= self.outer
+
+    def at_angle(self, angle: float) -> "Reach":
+        """Return the part of it where the roll can hold the wrist at an angle (rad, table frame).
+
+        Turned far to one side the wrist must not lie far to the other: roll = angle - waist.
+        """
+        low, high = angle - WRIST_ROLL_MAX, angle + WRIST_ROLL_MAX
+        if low <= self.waist_min and self.waist_max <= high:
+            return self
+        return replace(
+            self, waist_min=max(self.waist_min, low), waist_max=min(self.waist_max, high)
+        )
 
 
-def joint_angles(arm: ArmGeometry, wrist: Point, height: float) -> JointAngles | None:
+def free_turn(wrist: Pose, way: float) -> float:
+    """Return how far the roll can still turn (rad): to the left for a `way` above 0, else right."""
+    roll = wrist.angle - math.atan2(-wrist.x, wrist.y)
+    return max(0.0, WRIST_ROLL_MAX - math.copysign(roll, roll * way))
+
+
+def joint_angles(
+    arm: ArmGeometry, wrist: Point, height: float, angle: float = 0.0
+) -> JointAngles | None:
     """Inverse kinematics, elbow up, the hand straight down.
 
     Args:
         arm: links and joint limits.
         wrist: where the flange is to be on the table plane (in, table frame).
         height: of the flange over the table (in).
+        angle: at which the tool is to lie (rad, table frame).
 
     Returns:
         The joint angles, or None when no angles within the limits bring the flange there.
@@ -73,6 +104,7 @@ def joint_angles(arm: ArmGeometry, wrist: Point, height: float) -> JointAngles |
     )
     pitch = math.pi / 2 + shoulder - elbow
     waist = math.atan2(-wrist.x, wrist.y)
+    roll = angle - waist
     within = (
         elbow <= math.radians(arm.elbow_max_degrees) + 1e-12
         and math.radians(arm.shoulder_min_degrees)
@@ -80,8 +112,9 @@ def joint_angles(arm: ArmGeometry, wrist: Point, height: float) -> JointAngles |
         <= math.radians(arm.shoulder_max_degrees)
         and abs(pitch) <= WRIST_PITCH_MAX
         and abs(waist) <= math.radians(arm.waist_max_degrees) + 1e-12
+        and abs(roll) <= WRIST_ROLL_MAX
     )
-    return JointAngles(waist, shoulder, elbow, pitch, -waist) if within else None
+    return JointAngles(waist, shoulder, elbow, pitch, roll) if within else None
 
 
 @lru_cache(maxsize=64)
@@ -119,10 +152,9 @@ def reach_at(arm: ArmGeometry, height: float) -> Reach:
             f"arm: the joint limits leave no reach with the flange at {height} in; widen "
             "arm.elbow_max_degrees, arm.shoulder_min_degrees or arm.shoulder_max_degrees"
         )
+    waist = math.radians(arm.waist_max_degrees)
     return Reach(
-        _bisect(possible, inner, inside[0]),
-        _bisect(possible, outer, inside[-1]),
-        math.radians(arm.waist_max_degrees),
+        _bisect(possible, inner, inside[0]), _bisect(possible, outer, inside[-1]), -waist, waist
     )
 
 

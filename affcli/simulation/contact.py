@@ -1,4 +1,6 @@
-"""When does a tool that moves straight first touch the puck? In closed form, without an engine."""
+"""When does a tool first touch the puck? Without an engine: of a tool that moves straight in closed
+form, of one that turns by going only as far as it surely does not touch.
+"""
 
 import math
 from collections.abc import Sequence
@@ -7,6 +9,8 @@ from affcli.core.geometry import ConvexPolygon, Point
 
 TOUCHING = 1e-9
 """A gap of no more than this (in) is rounding: the disc touches already."""
+CLOSE = 0.005
+"""A tool that turns past the disc with no more than this gap (in) may as well touch it."""
 
 
 def travel_to_contact(
@@ -32,6 +36,36 @@ def travel_to_contact(
         if travel is not None and travel <= length and (nearest is None or travel < nearest):
             nearest = travel
     return nearest
+
+
+def arc_to_contact(
+    parts: Sequence[ConvexPolygon], lever: float, length: float, center: Point, radius: float
+) -> float | None:
+    """Return how far the parts surely turn before they touch a disc at rest.
+
+    Seen from the tool the disc goes around the wrist, and its centre comes no nearer to a part than
+    it travels: so it can go on by the gap, again and again (conservative advancement).
+
+    Args:
+        parts: convex parts of the tool where the turn begins, about the wrist (in).
+        lever: at which the arc is told; below 0 the tool turns clockwise (in).
+        length: of the arc (in).
+        center: of the disc as seen from the wrist (in, the axes of the parts).
+        radius: of the disc (in).
+
+    Returns:
+        An arc at whose end the gap is at most `CLOSE` (in); None when they never come so near.
+    """
+    distance, scale, arc = math.hypot(*center), abs(lever), 0.0
+    while True:
+        cos, sin = math.cos(arc / lever), math.sin(arc / lever)
+        seen = Point(cos * center.x + sin * center.y, cos * center.y - sin * center.x)
+        gap = min(part.distance(seen) for part in parts) - radius
+        if gap <= CLOSE:
+            return arc
+        if gap * scale > distance * (length - arc):
+            return None
+        arc += gap * scale / distance
 
 
 def _swept_box_misses(

@@ -7,12 +7,14 @@ import math
 import numpy as np
 
 from affcli.core.affordance import Affordance
+from affcli.core.behavior import Repertoire
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.geometry import Point, Pose
+from affcli.core.motion import turned_by
 from affcli.core.task import GoalRegion
 from affcli.core.tool import Tool
 from affcli.errors import BadInputError
-from affcli.simulation.arm import reach_at
+from affcli.simulation.arm import Reach, reach_at
 from affcli.simulation.reach_of_tool import touchable
 from affcli.simulation.table import Table
 from affcli.simulation.wrist_motion import on_grid, stop_at_edge
@@ -27,14 +29,16 @@ class SimulatedExperimenter:
     Args:
         table: what it sees and sets.
         rng: where it puts things.
+        repertoire: what the robot can do.
     """
 
-    def __init__(self, table: Table, rng: np.random.Generator) -> None:
+    def __init__(self, table: Table, rng: np.random.Generator, repertoire: Repertoire) -> None:
         self._table = table
         self._rng = rng
         arm = table.workspace.arm
         self._reach = reach_at(arm, arm.flange_height)
         self._lifted = reach_at(arm, arm.flange_height + arm.lift_height)
+        self._turned = {one.call: turned_by(one.motion) for one in repertoire}
 
     def lay_out_learning(self, tool: Tool) -> None:
         """Begin a learning run: tool and attractor at random positions, no goal (§6)."""
@@ -60,14 +64,18 @@ class SimulatedExperimenter:
         self._table.wrist = self._table.home
 
     def attractor_out_of_reach(self) -> bool:
-        """Tell whether no behavior from any wrist position can touch the attractor.
+        """Tell whether no slide from any wrist position can touch the attractor, the tool straight.
 
         A touch counts when it can move the attractor by more than T detects: a tool that can only
         graze it shows the robot nothing. Nothing reaches an attractor pushed over the table's edge.
+
+        Choice: what only a turned tool could touch counts as out of reach. It is 3 % of the table
+        for a stick turned by up to 60 degrees; left there, the attractor is out of reach of all
+        other behaviors for a while, which costs a fifth of the rows.
         """
         table = self._table
         point, depth = table.attractor.point, table.workspace.puck.radius - MOVEMENT_THRESHOLD
-        within = touchable(table.outlines, self._reach, point, depth)
+        within = touchable(table.tool.outlines, self._reach, point, depth)
         return not (self._is_on_table(point) and within)
 
     def put_attractor_back(self) -> None:
@@ -116,11 +124,12 @@ class SimulatedExperimenter:
     def _wrist_for(self, row: Affordance) -> Point:
         """Return a random wrist position from which `row` can be done again, its own at worst."""
         offset, travel, own = row.start.wrist_to_object, _travel(row), row.start.wrist
+        low, lifted = self._reach_for(row)
         for _ in range(PLACEMENTS):
             place = self._random_place()
             anywhere = Point(place.x - offset.x, place.y - offset.y)
-            wrist = self._before_edge(anywhere, travel) if row.truncated else anywhere
-            if wrist is None or not self._can_go(wrist, travel):
+            wrist = _before_edge(low, anywhere, travel) if row.truncated else anywhere
+            if wrist is None or not (lifted.holds(wrist) and _can_go(low, wrist, travel)):
                 continue
             if self._is_on_table(Point(wrist.x + offset.x, wrist.y + offset.y)):
                 return wrist
@@ -131,26 +140,12 @@ class SimulatedExperimenter:
             )
         return own
 
-    def _can_go(self, wrist: Point, travel: Point) -> bool:
-        """Tell whether the tool can be set down at `wrist` and slid by `travel` from there."""
-        if not (self._reach.holds(wrist) and self._lifted.holds(wrist)):
-            return False
-        end = Point(wrist.x + travel.x, wrist.y + travel.y)
-        return stop_at_edge(self._reach, wrist, end) == end
-
-    def _before_edge(self, wrist: Point, travel: Point) -> Point | None:
-        """Return a wrist from which `travel` ends at the edge of the reach, on the line of `wrist`.
-
-        None when the line does not begin within the reach, or the behavior took the wrist nowhere.
-        """
-        distance = math.hypot(*travel)
-        if distance == 0.0 or not self._reach.holds(wrist):
-            return None
-        # Far enough to meet the edge wherever the line begins.
-        far = 2.0 * self._reach.outer / distance
-        away = Point(wrist.x + far * travel.x, wrist.y + far * travel.y)
-        edge = stop_at_edge(self._reach, wrist, away)
-        return Point(edge.x - travel.x, edge.y - travel.y)
+    def _reach_for(self, row: Affordance) -> tuple[Reach, Reach]:
+        """Return where the wrist can be, low and lifted, at each angle that `row` turns it to."""
+        low, lifted = self._reach, self._lifted.at_angle(row.wrist_angle)
+        for turn in self._turned.get(row.exploratory, (0.0,)):
+            low = low.at_angle(row.wrist_angle + turn)
+        return low, lifted
 
     def _random_place(self) -> Point:
         """Return a random place on the table, uniform."""
@@ -171,6 +166,27 @@ class SimulatedExperimenter:
         radius = (inner**2 + u * (outer**2 - inner**2)) ** 0.5
         bearing = (2.0 * v - 1.0) * self._reach.waist_max
         return Pose(on_grid(-radius * math.sin(bearing)), on_grid(radius * math.cos(bearing)))
+
+
+def _can_go(reach: Reach, wrist: Point, travel: Point) -> bool:
+    """Tell whether the tool can be slid by `travel` from `wrist`, both within the reach."""
+    end = Point(wrist.x + travel.x, wrist.y + travel.y)
+    return reach.holds(wrist) and stop_at_edge(reach, wrist, end) == end
+
+
+def _before_edge(reach: Reach, wrist: Point, travel: Point) -> Point | None:
+    """Return a wrist from which `travel` ends at the edge of the reach, on the line of `wrist`.
+
+    None when the line does not begin within the reach, or the behavior took the wrist nowhere.
+    """
+    distance = math.hypot(*travel)
+    if distance == 0.0 or not reach.holds(wrist):
+        return None
+    # Far enough to meet the edge wherever the line begins.
+    far = 2.0 * reach.outer / distance
+    away = Point(wrist.x + far * travel.x, wrist.y + far * travel.y)
+    edge = stop_at_edge(reach, wrist, away)
+    return Point(edge.x - travel.x, edge.y - travel.y)
 
 
 def _travel(row: Affordance) -> Point:

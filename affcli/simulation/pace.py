@@ -44,7 +44,7 @@ class Pace:
 
         Args:
             center: of the puck, from the tool's grasp point (in, tool frame).
-            speed: of the tool (in/s).
+            speed: no point of the tool moves faster (in/s).
             left: short steps left at this speed.
         """
         overlap, clearance = self._distances(*center)

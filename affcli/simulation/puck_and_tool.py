@@ -1,6 +1,7 @@
 """A puck and a tool on the table, as bodies of the physics engine (pymunk)."""
 
 import math
+import weakref
 from collections.abc import Callable, Sequence
 from functools import partial
 
@@ -34,10 +35,12 @@ class PuckAndTool:
     Attributes:
         step: advances everything by a time (s).
         move_tool: gives the tool a velocity (in/s, table frame), which it keeps.
+        turn_tool: gives it an angular velocity about its grasp point (rad/s), which it keeps.
     """
 
     step: Callable[[float], None]
     move_tool: Callable[[tuple[float, float]], None]
+    turn_tool: Callable[[float], None]
 
     def __init__(
         self,
@@ -59,48 +62,56 @@ class PuckAndTool:
         rim = pymunk.Circle(body, puck.radius)
         rim.friction = 1.0
         tool = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
-        space.add(body, rim, tool)
+        table = pymunk.Body(body_type=pymunk.Body.STATIC)
+        space.add(body, rim, tool, table)
         for outline in outlines:
             part = pymunk.Poly(tool, list(outline.vertices))
             # The engine multiplies the two coefficients of a contact.
             part.friction = friction.tool_puck
             space.add(part)
-        joints = surface_friction(space.static_body, body, puck, friction)
+        joints = surface_friction(table, body, puck, friction)
         space.add(*joints)
-        self._owned = (space, body, rim, tool, joints)  # the engine does not keep them alive
+        self._owned = (space, body, rim, tool, table, joints)  # the engine does not keep them alive
+        # A space that is freed goes over what is in it, and the program is aborted when garbage is
+        # collected meanwhile that a body is in: so nothing is left in it.
+        weakref.finalize(self, _empty, space).atexit = False
         self._share = joints[0].max_force
         self._space, self._puck, self._tool = space._space, body._body, tool._body  # noqa: SLF001
         self._joints = [joint._constraint for joint in joints]  # noqa: SLF001
         self.step = partial(chipmunk.cpSpaceStep, self._space)
         self.move_tool = partial(chipmunk.cpBodySetVelocity, self._tool)
+        self.turn_tool = partial(chipmunk.cpBodySetAngularVelocity, self._tool)
 
-    def lay_out(self, puck: Pose, wrist: Point) -> None:
+    def lay_out(self, puck: Pose, wrist: Point, turned: float = 0.0) -> None:
         """Put puck and tool somewhere, at rest, with nothing left of the push before.
 
         Args:
             puck: the puck's pose (in, rad, table frame).
             wrist: where the tool's grasp point is (in, table frame).
+            turned: by how much the tool is turned about it (rad).
         """
         # The engine starts each step from the impulses of the step before, also when that step was
         # the last of another push. A step with the puck far away ends every contact, and one in
         # which the joints may not exceed zero is the only way to make them forget.
-        self._place(FAR_AWAY, 0.0, wrist)
+        self._place(Pose(*FAR_AWAY), wrist, turned)
         for joint in self._joints:
             chipmunk.cpConstraintSetMaxForce(joint, 0.0)
         self.step(STEP)
         for joint in self._joints:
             chipmunk.cpConstraintSetMaxForce(joint, self._share)
-        self._place((puck.x, puck.y), puck.angle, wrist)
+        self._place(puck, wrist, turned)
 
-    def _place(self, puck: tuple[float, float], angle: float, wrist: Point) -> None:
+    def _place(self, puck: Pose, wrist: Point, turned: float) -> None:
         """Put puck and tool somewhere, at rest."""
         # The angle first: setting it later would move the body about its centre of gravity.
-        chipmunk.cpBodySetAngle(self._puck, angle)
-        chipmunk.cpBodySetPosition(self._puck, puck)
+        chipmunk.cpBodySetAngle(self._puck, puck.angle)
+        chipmunk.cpBodySetPosition(self._puck, (puck.x, puck.y))
         chipmunk.cpBodySetVelocity(self._puck, AT_REST)
         chipmunk.cpBodySetAngularVelocity(self._puck, 0.0)
+        chipmunk.cpBodySetAngle(self._tool, turned)
         chipmunk.cpBodySetPosition(self._tool, wrist)
         chipmunk.cpBodySetVelocity(self._tool, AT_REST)
+        chipmunk.cpBodySetAngularVelocity(self._tool, 0.0)
         chipmunk.cpSpaceReindexShapesForBody(self._space, self._puck)
         chipmunk.cpSpaceReindexShapesForBody(self._space, self._tool)
 
@@ -119,3 +130,13 @@ class PuckAndTool:
         puck = chipmunk.cpBodyGetPosition(self._puck)
         tool = chipmunk.cpBodyGetPosition(self._tool)
         return puck.x - tool.x, puck.y - tool.y
+
+    def puck_from_turned_tool(self) -> tuple[float, float]:
+        """Return the same in axes that turn with the tool (in)."""
+        at = chipmunk.cpBodyWorldToLocal(self._tool, chipmunk.cpBodyGetPosition(self._puck))
+        return at.x, at.y
+
+
+def _empty(space: pymunk.Space) -> None:
+    """Take everything out of a space."""
+    space.remove(*space.shapes, *space.constraints, *space.bodies)

@@ -1,4 +1,4 @@
-"""The physics of one straight push: a tool slides on the table against the puck (pymunk)."""
+"""The physics of one push: a tool slides or turns on the table against the puck (pymunk)."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -6,11 +6,11 @@ from collections.abc import Callable, Sequence
 from affcli.core.geometry import ConvexPolygon, Point, Pose
 from affcli.core.workspace import PuckGeometry, SurfaceFriction
 from affcli.errors import SimulationDivergedError
-from affcli.simulation.contact import travel_to_contact
+from affcli.simulation.contact import arc_to_contact, travel_to_contact
 from affcli.simulation.pace import Pace
 from affcli.simulation.physics_settings import PhysicsSettings
 from affcli.simulation.puck_and_tool import PuckAndTool
-from affcli.simulation.wrist_motion import STEP, Stretch, distance_of, skip
+from affcli.simulation.wrist_motion import STEP, Stretch, distance_of, skip, tip_of
 
 REST_SPEED = 1e-6
 """The puck rests when it moves slower than this (in/s) and the tool has stopped."""
@@ -20,12 +20,12 @@ CONTACT_MARGIN = 0.02
 """Start this far before contact (in): two steps at full speed."""
 
 Moment = Callable[[float, float, Pose], None]
-"""Called after each physics step: seconds since the push began, the tool's travel (in), the puck's
-pose."""
+"""Called after each physics step: seconds since the push began, the tool's travel or arc (in), the
+puck's pose."""
 
 
 class PushSimulator:
-    """Pushes of one puck with one tool shape.
+    """Pushes of one puck with one tool shape, sliding or turning.
 
     A push is a pure function of where tool and puck are and of the motion: the Space holds nothing
     over from the push before.
@@ -46,6 +46,7 @@ class PushSimulator:
     ) -> None:
         self._outlines = tuple(outlines)
         self._radius = puck.radius
+        self._tip = tip_of(self._outlines)
         self._table = PuckAndTool(self._outlines, puck, friction, settings)
 
     def push(
@@ -72,7 +73,7 @@ class PushSimulator:
         Raises:
             SimulationDivergedError: the engine gave a number that is not finite.
         """
-        gone = elapsed = 0.0
+        gone = 0.0
         if not whole and watch is None:
             center = Point(puck.x - wrist.x, puck.y - wrist.y)
             length = distance_of(motion)
@@ -82,14 +83,80 @@ class PushSimulator:
             gone, motion = skip(motion, max(0.0, travel - CONTACT_MARGIN))
         table = self._table
         table.lay_out(puck, Point(wrist.x + gone * direction.x, wrist.y + gone * direction.y))
+
+        def move(speed: float) -> None:
+            table.move_tool((speed * direction.x, speed * direction.y))
+
+        self._simulate(move, 1.0, table.puck_from_tool, motion, gone, watch)
+        return self._rest(puck, wrist)
+
+    def turn(
+        self,
+        puck: Pose,
+        wrist: Point,
+        lever: float,
+        motion: tuple[Stretch, ...],
+        watch: Moment | None = None,
+        *,
+        whole: bool = False,
+    ) -> Pose:
+        """Return where the puck comes to rest when the tool turns about the wrist.
+
+        Args:
+            puck, wrist, watch, whole: as for `push`.
+            lever: at which the arc of the motion is told: a power of two, or its negative to turn
+                clockwise (in).
+            motion: the stretches of the arc.
+
+        Raises:
+            SimulationDivergedError: the engine gave a number that is not finite.
+        """
+        gone = 0.0
+        if not whole and watch is None:
+            center = Point(puck.x - wrist.x, puck.y - wrist.y)
+            length = distance_of(motion)
+            arc = arc_to_contact(self._outlines, lever, length, center, self._radius)
+            if arc is None:
+                return puck
+            gone, motion = skip(motion, max(0.0, arc - CONTACT_MARGIN))
+        table = self._table
+        table.lay_out(puck, wrist, gone / lever)
+
+        def turn(speed: float) -> None:
+            table.turn_tool(speed / lever)
+
+        fastest = self._tip / abs(lever)
+        self._simulate(turn, fastest, table.puck_from_turned_tool, motion, gone, watch)
+        return self._rest(puck, wrist)
+
+    def _simulate(
+        self,
+        move: Callable[[float], None],
+        fastest: float,
+        seen: Callable[[], tuple[float, float]],
+        motion: tuple[Stretch, ...],
+        gone: float,
+        watch: Moment | None,
+    ) -> None:
+        """Run a motion from where everything was laid out until the puck rests.
+
+        Args:
+            move: gives the tool a speed (in/s).
+            fastest: no point of the tool moves faster than this many times that speed.
+            seen: gives where the puck is in the tool's own frame (in).
+            motion: the stretches that are left.
+            gone: how far the tool is already (in).
+            watch: called after each physics step.
+        """
+        table, elapsed = self._table, 0.0
         pace = Pace(self._outlines, self._radius)
         for speed, steps in motion:
-            table.move_tool((speed * direction.x, speed * direction.y))
+            move(speed)
             left = steps
             while left > 0:
                 stride, count = 1, 1
                 if left > 1:
-                    stride, count = pace.next(table.puck_from_tool(), speed, left)
+                    stride, count = pace.next(seen(), fastest * speed, left)
                 left -= stride * count
                 for _ in range(count):
                     table.step(stride * STEP)
@@ -97,8 +164,12 @@ class PushSimulator:
                         elapsed += stride * STEP
                         gone += stride * speed * STEP
                         watch(elapsed, gone, table.puck_pose())
+        move(0.0)
         self._settle(elapsed, gone, watch)
-        pose = table.puck_pose()
+
+    def _rest(self, puck: Pose, wrist: Point) -> Pose:
+        """Return where the puck lies now; SimulationDivergedError when that is nowhere."""
+        pose = self._table.puck_pose()
         if not all(map(math.isfinite, pose)):
             raise SimulationDivergedError(
                 f"the push from wrist ({wrist.x:.3f}, {wrist.y:.3f}) with the puck at "
@@ -109,7 +180,6 @@ class PushSimulator:
     def _settle(self, elapsed: float, gone: float, watch: Moment | None) -> None:
         """Let the puck come to rest after the tool has stopped."""
         table = self._table
-        table.move_tool((0.0, 0.0))
         for step in range(1, SETTLE_STEPS + 1):
             if table.puck_speed() < REST_SPEED:
                 return

@@ -52,8 +52,9 @@ def _part_touches(part: ConvexPolygon, reach: Reach, attractor: Point, radius: f
     and a point as far as the inner edge.
     """
     grown = _grown_box(part, attractor, radius)
-    for side in (1.0, -1.0):
-        grown = _clip(grown, side, reach.waist_max)
+    low, high = reach.waist_min, reach.waist_max
+    grown = _clip(grown, -math.cos(low), -math.sin(low))
+    grown = _clip(grown, math.cos(high), math.sin(high))
     if len(grown) < 3:
         return False
     wrists = ConvexPolygon(tuple(grown))
@@ -96,12 +97,12 @@ def _turn(a: Point, b: Point, c: Point) -> float:
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)
 
 
-def _clip(polygon: list[Point], side: float, waist_max: float) -> list[Point]:
-    """Keep what lies within the waist's range on one side of straight ahead (Sutherland-Hodgman).
+def _clip(polygon: list[Point], nx: float, ny: float) -> list[Point]:
+    """Keep what lies on the side of a line through the shoulder that (nx, ny) points to
+    (Sutherland-Hodgman).
 
-    Exact for a range of up to 90 degrees to each side, where the sector is convex.
+    Exact for a waist's range of up to 180 degrees in all, where the sector is convex.
     """
-    nx, ny = -side * math.cos(waist_max), math.sin(waist_max)
     kept: list[Point] = []
     for a, b in zip(polygon, polygon[1:] + polygon[:1], strict=True):
         da, db = a.x * nx + a.y * ny, b.x * nx + b.y * ny

@@ -16,21 +16,25 @@ from affcli.core.behavior import (
     Repertoire,
 )
 from affcli.core.geometry import Point, Pose
-from affcli.core.motion import Motion, Slide, Wait
+from affcli.core.motion import Motion, Slide, Turn, Wait
 from affcli.core.observation import Observation
 from affcli.core.tool import hold_of
 from affcli.core.world import Film
 from affcli.errors import BadInputError, one_line
-from affcli.simulation.arm import reach_at
+from affcli.simulation.arm import WRIST_ROLL_MAX, free_turn, reach_at
 from affcli.simulation.pushing import Moment
 from affcli.simulation.table import Table
 from affcli.simulation.wrist_motion import (
+    GRID,
     duration,
+    lever_of,
     on_grid,
     stop_at_edge,
+    tip_of,
     trapezoid,
     trapezoid_time,
     trapezoid_travel,
+    turning,
 )
 
 FILM_STEP = 1.0 / 120.0
@@ -64,8 +68,14 @@ class SimulatedRobot:
         """The wrist now (in, rad, table frame), by the joint encoders."""
         return self._table.wrist
 
-    def reaches(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Tell for each wrist position (n,), (n,) whether the arm can set the tool down there.
+    def reaches(
+        self,
+        x: NDArray[np.float64],
+        y: NDArray[np.float64],
+        angle: NDArray[np.float64] | float = 0.0,
+    ) -> NDArray[np.bool_]:
+        """Tell for each wrist position (n,), (n,), at an angle, whether the arm can set the tool
+        down there.
 
         To set it down the arm must hold it there both lifted and on the table.
         """
@@ -82,6 +92,9 @@ class SimulatedRobot:
             np.sqrt(squared, out=squared)
             squared *= math.cos(self._low.waist_max)
             held &= y >= squared
+        # Up to this angle the roll can undo all that the waist turns.
+        if np.any(np.abs(angle) > WRIST_ROLL_MAX - self._low.waist_max):
+            held &= np.abs(angle + np.arctan2(x, y)) <= WRIST_ROLL_MAX
         return held
 
     def execute(self, call: BehaviorCall, seen: Observation | None) -> Execution:
@@ -125,6 +138,8 @@ class SimulatedRobot:
                 continue
             elif isinstance(segment, Slide):
                 status = self._slide(segment.dx, segment.dy)
+            elif isinstance(segment, Turn):
+                status = self._turn(math.radians(segment.degrees))
             else:
                 status = self._carry(segment.to)
         return status
@@ -132,41 +147,71 @@ class SimulatedRobot:
     def _carry(self, to: Pose) -> ExecutionStatus:
         """Move lifted and lower the tool; keep it lifted there when the attractor lies under it."""
         target = Pose(on_grid(to.x), on_grid(to.y), to.angle)
-        if not (self._low.holds(target.point) and self._high.holds(target.point)):
+        reaches = (reach.at_angle(target.angle) for reach in (self._low, self._high))
+        if not all(reach.holds(target.point) for reach in reaches):
             return ExecutionStatus.OUT_OF_REACH
         timing, height = self._table.workspace.motion, self._table.workspace.arm.lift_height
-        travel = math.dist(self._table.wrist.point, target.point)
         if self.film is not None:
             self._film_carrying(target, self.film)
         still = 2.0 * height / timing.lift_speed + timing.hold
-        speed, acceleration = timing.transfer_speed, timing.transfer_acceleration
-        self.clock += still + trapezoid_time(travel, speed, acceleration)
+        self.clock += still + self._carrying_time(target)
         self._table.wrist = target
         clear = self._table.clear_of_attractor(target)
         return ExecutionStatus.DONE if clear else ExecutionStatus.BLOCKED
+
+    def _carrying_time(self, target: Pose) -> float:
+        """Return how long the wrist travels lifted (s); it turns meanwhile."""
+        timing, wrist = self._table.workspace.motion, self._table.wrist
+        travel, turn = math.dist(wrist.point, target.point), abs(target.angle - wrist.angle)
+        return max(
+            trapezoid_time(travel, timing.transfer_speed, timing.transfer_acceleration),
+            trapezoid_time(math.degrees(turn), timing.turn_speed, timing.turn_acceleration),
+        )
 
     def _slide(self, dx: float, dy: float) -> ExecutionStatus:
         """Slide straight on the table, as far as the reach goes."""
         start, timing = self._table.wrist.point, self._table.workspace.motion
         asked = Point(on_grid(start.x + dx), on_grid(start.y + dy))
-        end = stop_at_edge(self._low, start, asked)
+        end = stop_at_edge(self._low.at_angle(self._table.wrist.angle), start, asked)
         distance = math.dist(start, end)
         if distance > 0.0:
             motion = trapezoid(on_grid(distance), timing.push_speed, timing.push_acceleration)
-            direction = Point((end.x - start.x) / distance, (end.y - start.y) / distance)
-            watch = None if self.film is None else self._filmed(self.film, direction)
+            ways = ((end.x - start.x) / distance, (end.y - start.y) / distance)
+            direction = Point(*map(on_grid, ways))
+            watch = None if self.film is None else self._filmed(self.film, Pose(*direction))
             self._table.slide(direction, end, motion, watch)
             self.clock += duration(motion)
         return ExecutionStatus.DONE if end == asked else ExecutionStatus.TRUNCATED
 
-    def _filmed(self, film: Film, direction: Point) -> Moment:
-        """Return what shows a film each moment of a push that begins now."""
+    def _turn(self, angle: float) -> ExecutionStatus:
+        """Turn on the table about the wrist, as far as the roll goes."""
+        table, timing = self._table, self._table.workspace.motion
+        tip = tip_of(table.tool.outlines)
+        lever = lever_of(tip)
+        asked = on_grid(abs(angle) * lever)
+        free = math.floor(free_turn(table.wrist, angle) * lever / GRID) * GRID
+        arc = min(asked, free)
+        motion = turning(arc, lever, tip, timing.push_speed, timing.push_acceleration)
+        if motion:
+            lever = math.copysign(lever, angle)
+            course = Pose(0.0, 0.0, 1.0 / lever)
+            watch = None if self.film is None else self._filmed(self.film, course)
+            table.turn(lever, motion, watch)
+            self.clock += duration(motion)
+        return ExecutionStatus.DONE if arc == asked else ExecutionStatus.TRUNCATED
+
+    def _filmed(self, film: Film, course: Pose) -> Moment:
+        """Return what shows a film each moment of a push that begins now.
+
+        Args:
+            film: what it is shown to.
+            course: how far the wrist goes along x and y and turns, for each inch of the push.
+        """
         began, start = self.clock, self._table.wrist
 
         def watch(elapsed: float, gone: float, puck: Pose) -> None:
             """Show where tool and puck are."""
-            x, y = start.x + gone * direction.x, start.y + gone * direction.y
-            wrist = Pose(x, y, start.angle)
+            wrist = Pose(*(a + gone * b for a, b in zip(start, course, strict=True)))
             film(began + elapsed, replace(self._table.scene, attractor=puck, wrist=wrist))
 
         return watch
@@ -174,18 +219,22 @@ class SimulatedRobot:
     def _film_carrying(self, target: Pose, film: Film) -> None:
         """Show a film how the tool is lifted, carried to `target` and turned, and lowered."""
         timing, height = self._table.workspace.motion, self._table.workspace.arm.lift_height
-        speed, acceleration = timing.transfer_speed, timing.transfer_acceleration
         start = self._table.wrist
         distance = math.dist(start.point, target.point)
-        lifting = height / timing.lift_speed
-        travelling = trapezoid_time(distance, speed, acceleration)
+        turn = math.degrees(abs(target.angle - start.angle))
+        lifting, travelling = height / timing.lift_speed, self._carrying_time(target)
         steps = math.ceil((2.0 * lifting + travelling) / FILM_STEP)
         for elapsed in (FILM_STEP * k for k in range(steps + 1)):
             under_way = min(travelling, max(0.0, elapsed - lifting))
-            gone = trapezoid_travel(under_way, distance, speed, acceleration)
+            gone = trapezoid_travel(
+                under_way, distance, timing.transfer_speed, timing.transfer_acceleration
+            )
+            turned = trapezoid_travel(under_way, turn, timing.turn_speed, timing.turn_acceleration)
             share = gone / distance if distance > 0.0 else 1.0
+            swing = turned / turn if turn > 0.0 else 1.0
             lowering = elapsed - lifting - travelling
             lift = min(elapsed, lifting, lifting - lowering) * timing.lift_speed
-            wrist = Pose(*(a + share * (b - a) for a, b in zip(start, target, strict=True)))
+            shares = (share, share, swing)
+            wrist = Pose(*(a + s * (b - a) for a, b, s in zip(start, target, shares, strict=True)))
             scene = replace(self._table.scene, wrist=wrist, lift=max(0.0, lift))
             film(self.clock + elapsed, scene)

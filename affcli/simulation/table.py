@@ -7,7 +7,7 @@ from affcli.core.tool import PUCK_COLOR, Hold, Tool, turned_outlines
 from affcli.core.workspace import Workspace
 from affcli.simulation.physics_settings import PhysicsSettings
 from affcli.simulation.pushing import Moment, PushSimulator
-from affcli.simulation.wrist_motion import Stretch, on_grid
+from affcli.simulation.wrist_motion import Stretch, distance_of, on_grid
 
 
 class Table:
@@ -96,6 +96,18 @@ class Table:
         simulator, wrist = self._simulator_now(), self.wrist
         self.attractor = simulator.push(self.attractor, wrist.point, direction, motion, watch)
         self.wrist = Pose(end.x, end.y, wrist.angle)
+
+    def turn(self, lever: float, motion: tuple[Stretch, ...], watch: Moment | None = None) -> None:
+        """Turn the tool on the table about the wrist; the puck goes where physics takes it.
+
+        Args:
+            lever: at which the arc is told; below 0 the tool turns clockwise (in).
+            motion: the stretches of the arc.
+            watch: called after each physics step.
+        """
+        simulator, wrist = self._simulator_now(), self.wrist
+        self.attractor = simulator.turn(self.attractor, wrist.point, lever, motion, watch)
+        self.wrist = Pose(wrist.x, wrist.y, wrist.angle + distance_of(motion) / lever)
 
     def _simulator_now(self) -> PushSimulator:
         """Return the engine for the tool as it is held and turned, made once for each outline."""

@@ -246,7 +246,7 @@ class TableWorld:
             table,
             SimulatedRobot(table, learned.repertoire),
             sight.sensor(lambda: table.scene, streams["noise"]),
-            SimulatedExperimenter(table, streams["hand"]),
+            SimulatedExperimenter(table, streams["hand"], learned.repertoire),
             learned.binding,
             tuple(behavior.call for behavior in learned.repertoire),
             streams,

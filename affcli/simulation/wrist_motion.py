@@ -1,16 +1,19 @@
-"""Straight wrist motion in steps of the physics clock.
+"""Wrist motion, straight or turning, in steps of the physics clock.
 
 Every length is kept on a grid of 2^-20 in (far below the arm's encoders) and every velocity times
 the time step of 2^-9 s lies on that grid, so sums of displacements are exact in binary. That is
-why a push can be started a moment before contact and still be the same to the last bit.
+why a push can be started a moment before contact and still be the same to the last bit. A turn is
+told as an arc at a lever that is a power of two (in), so its angles are exact, too; and so are the
+ways of a slide along any line, whose direction is rounded like a length.
 """
 
 import math
+from collections.abc import Sequence
 from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
-from affcli.core.geometry import Point
+from affcli.core.geometry import ConvexPolygon, Point
 from affcli.simulation.arm import Reach
 
 STEP = 2.0**-9
@@ -108,6 +111,32 @@ def trapezoid_travel(elapsed: float, distance: float, speed: float, acceleration
     return distance - 0.5 * acceleration * (whole - elapsed) ** 2
 
 
+def tip_of(outlines: Sequence[ConvexPolygon]) -> float:
+    """Return how far the farthest corner of a tool is from the wrist (in)."""
+    return max(math.hypot(*corner) for outline in outlines for corner in outline.vertices)
+
+
+def lever_of(tip: float) -> float:
+    """Return the lever at which turns of a tool are told (in), by how far its tip is."""
+    return 2.0 ** math.floor(math.log2(tip))
+
+
+def turning(
+    arc: float, lever: float, tip: float, speed: float, acceleration: float
+) -> tuple[Stretch, ...]:
+    """Return the stretches of an arc at the lever: the tip speeds up as in a push and is no faster.
+
+    Args:
+        arc: how far (in), on the grid.
+        lever, tip: as by `lever_of` (in).
+        speed, acceleration: of a push (in/s, in/s^2).
+    """
+    top = speed * lever / tip
+    # Such speeds are reached exactly, so no rounding makes the tip faster than it may be.
+    top = math.floor(top * 16.0) / 16.0 or top
+    return trapezoid(arc, top, acceleration * top / speed)
+
+
 def stop_at_edge(reach: Reach, start: Point, end: Point) -> Point:
     """Return how far a straight motion from `start` toward `end` gets before the reach ends.
 
@@ -142,8 +171,8 @@ def _crossings(reach: Reach, start: Point, ux: float, uy: float, length: float) 
         if discriminant >= 0.0:
             root = math.sqrt(discriminant)
             found += [-along - root, -along + root]
-    for side in (-1.0, 1.0):
-        ex, ey = side * math.sin(reach.waist_max), math.cos(reach.waist_max)
+    for bearing in (reach.waist_max, reach.waist_min):
+        ex, ey = -math.sin(bearing), math.cos(bearing)
         across = ux * ey - uy * ex
         if across != 0.0:
             found.append(-(start.x * ey - start.y * ex) / across)

@@ -47,17 +47,17 @@ def rows(count: int, seed: int = 0) -> tuple[Affordance, ...]:
     return tuple(made)
 
 
-def anywhere(x: NDArray[np.float64], _: NDArray[np.float64]) -> NDArray[np.bool_]:
+def anywhere(x: NDArray[np.float64], *_: object) -> NDArray[np.bool_]:
     """Say of every wrist position that the arm reaches it."""
     return np.ones(len(x), dtype=bool)
 
 
-def nowhere(x: NDArray[np.float64], _: NDArray[np.float64]) -> NDArray[np.bool_]:
+def nowhere(x: NDArray[np.float64], *_: object) -> NDArray[np.bool_]:
     """Say of no wrist position that the arm reaches it."""
     return np.zeros(len(x), dtype=bool)
 
 
-def left_half(x: NDArray[np.float64], _: NDArray[np.float64]) -> NDArray[np.bool_]:
+def left_half(x: NDArray[np.float64], *_: object) -> NDArray[np.bool_]:
     """Say of the wrist positions on the left that the arm reaches them."""
     return x < 0.0
 

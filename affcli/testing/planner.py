@@ -47,7 +47,7 @@ class PlannerContract:
         wrist = situation.seen.wrist_for(row.start.wrist_to_object)
         assert chosen in situation.table.with_colors_of(situation.seen)
         assert is_probable(row.times_successful, row.times_used, planner.threshold)
-        assert situation.reaches(np.array([wrist.x]), np.array([wrist.y])).all()
+        assert situation.reaches(*(np.array([part]) for part in wrist)).all()
 
     def test_with_rows_that_can_be_used_one_is_chosen(self, planner: Planner) -> None:
         assert planner.choose(examples.situation(LEARNED)).position is not None

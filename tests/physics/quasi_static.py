@@ -1,8 +1,9 @@
 """A second opinion on pushing: a quasi-static solver that shares no code with the simulation.
 
-A disc presses evenly on the table; a tool of convex parts moves straight and pushes it. Nothing has
-inertia: at each instant the table's friction balances the contact forces. Lengths are in inches,
-forces in units of the table's friction (mu m g) and torques in units of that times the radius.
+A disc presses evenly on the table; a tool of convex parts moves straight, or turns about a point,
+and pushes it. Nothing has inertia: at each instant the table's friction balances the contact
+forces. Lengths are in inches, forces in units of the table's friction (mu m g) and torques in units
+of that times the radius.
 
 **The table.** A disc that moves at v and turns at w about its centre turns about a point at the
 distance d = |v| / |w| from its centre. In polar coordinates about that point every element of area
@@ -18,10 +19,11 @@ grows with f. So the modes are solved outright: the contact sticks with the f fo
 tool's ratio of tangential to normal velocity, if that |f| <= mu; otherwise it slides with f = +-mu.
 
 **Two contacts.** If either of them alone would leave the other free, it alone acts. Otherwise both
-stay closed; then the disc can only move as the tool does, without turning.
+stay closed; then the disc can only move as the tool does, and turns as it does.
 
-**Time.** The tool advances by a small stride; the overlap that results is the normal displacement
-of the stride. Strides and quadrature nodes are chosen by the tests of convergence.
+**Time.** All is reckoned in axes that move with the tool. It advances by a small stride; the
+overlap that results is the normal displacement of the stride. Strides and quadrature nodes are
+chosen by the tests of convergence.
 """
 
 from collections.abc import Sequence
@@ -49,19 +51,23 @@ CLOSED = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Push:
-    """One straight push.
+    """One push: the tool moves straight, or turns where it is.
 
     Args:
         parts: convex parts of the tool where the motion starts (in, table frame).
         direction: unit vector of the motion.
-        length: of the motion (in).
+        length: of the motion; of a turn the way of the part that is farthest from the pivot (in).
         puck: pose of the disc at rest before it (in, rad).
+        turn: by how much the tool turns (rad); then it does not move along `direction`.
+        pivot: about which it turns (in, table frame).
     """
 
     parts: tuple[ConvexPolygon, ...]
     direction: Point
     length: float
     puck: Pose
+    turn: float = 0.0
+    pivot: Point = Point(0.0, 0.0)
 
 
 def limit_surface(distance: float, nodes: int = NODES) -> tuple[float, float]:
@@ -166,7 +172,7 @@ class _Touched:
         at: centres of the discs, in the frame in which the tools rest where they began (in).
         overlap: of the disc with each part, negative where they are apart (in).
         normal: unit vectors from each part into the disc.
-        move: displacement of the tool in this step (in).
+        move: displacement of the tool in this step where it touches with each part (in).
     """
 
     rows: Indices
@@ -194,14 +200,28 @@ class _Mechanics:
         self._law = law
         self._radius = radius
 
-    def touched(self, at: Array, move: Array) -> _Touched:
-        """Return the pushes whose tool overlaps the disc."""
+    def touched(self, at: Array, slid: Array, turned: Array, pivot: Array) -> _Touched:
+        """Return the pushes whose tool overlaps the disc.
+
+        Args:
+            at: centres of the discs, as in `_Touched` (N, 2).
+            slid, turned: how far the tools moved and turned in this step (N, 2), (N,).
+            pivot: about which they turned (N, 2).
+        """
         distance, normal = self._tools.contacts(np.arange(len(at)), at)
+        arm = (at - pivot)[:, None, :] - self._radius * normal
+        across = np.stack([-arm[..., 1], arm[..., 0]], axis=2)
+        move = slid[:, None, :] + turned[:, None, None] * across
         every = _Touched(np.arange(len(at)), at, self._radius - distance, normal, move)
         return every.only(every.overlap.max(axis=1) > CLOSED)
 
-    def answer(self, touched: _Touched) -> Array:
-        """Return how the discs move (in, in) and turn (rad): (N, 3)."""
+    def answer(self, touched: _Touched, turned: Array) -> Array:
+        """Return how the discs move (in, in) and turn (rad): (N, 3).
+
+        Args:
+            touched: the discs.
+            turned: how far their tools turned in this step (N,).
+        """
         first = np.argmax(touched.overlap, axis=1)
         answer = self._one_contact(touched, first)
         left = self._left(touched, answer)
@@ -214,10 +234,10 @@ class _Mechanics:
         alone = self._one_contact(touched, second)
         touches = touched.overlap[np.arange(held.size), second] > CLOSED
         frees = self._left(touched, alone).max(axis=1) <= CLOSED
-        both = _two_contacts(touched, first, second)
+        both = _two_contacts(touched, first, second, turned[held])
         answer[held] = np.where((touches & frees)[:, None], alone, both)
         left = self._left(touched, answer[held]).max(axis=1)
-        if np.any(left > np.sum(touched.move**2, axis=1)):
+        if np.any(left > np.sum(touched.move**2, axis=2).max(axis=1)):
             raise ArithmeticError(f"{left.max():.6f} in of overlap left: three parts hold the disc")
         return answer
 
@@ -231,18 +251,25 @@ class _Mechanics:
         n = touched.normal[each, part]
         t = np.stack([-n[:, 1], n[:, 0]], axis=1)
         depth = np.maximum(touched.overlap[each, part], CLOSED)
-        aside, turned = self._law(depth, np.sum(touched.move * t, axis=1))
+        aside, turned = self._law(depth, np.sum(touched.move[each, part] * t, axis=1))
         shift = depth[:, None] * n + aside[:, None] * t
         return np.column_stack([shift, -turned / self._radius])
 
 
-def _two_contacts(touched: _Touched, first: Indices, second: Indices) -> Array:
-    """Return how the discs move when both contacts stay closed: (N, 3), without turning."""
+def _two_contacts(touched: _Touched, first: Indices, second: Indices, turned: Array) -> Array:
+    """Return how the discs move when both contacts stay closed: (N, 3)."""
     each = np.arange(first.size)
     normals = np.stack([touched.normal[each, first], touched.normal[each, second]], axis=1)
     depths = np.stack([touched.overlap[each, first], touched.overlap[each, second]], axis=1)
     shift = np.linalg.solve(normals, depths[..., None])[..., 0]
-    return np.column_stack([shift, np.zeros(first.size)])
+    return np.column_stack([shift, turned])
+
+
+def _rotated(vectors: Array, angle: Array) -> Array:
+    """Return vectors (N, 2) turned by angles (N,)."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    x, y = vectors.T
+    return np.column_stack([cos * x - sin * y, sin * x + cos * y])
 
 
 def push_all(
@@ -266,14 +293,22 @@ def push_all(
     """
     mechanics = _Mechanics(_Tools(pushes), contact_law(friction, nodes), radius)
     pucks = np.array([push.puck for push in pushes], dtype=np.float64)
+    turn = np.array([push.turn for push in pushes], dtype=np.float64)
+    pivot = np.array([push.pivot for push in pushes], dtype=np.float64)
     direction = np.array([push.direction for push in pushes], dtype=np.float64)
+    direction[turn != 0.0] = 0.0
     length = np.array([push.length for push in pushes], dtype=np.float64)
     gone = np.zeros_like(length)
     for step in range(1, int(np.ceil(length.max() / stride - 1e-9)) + 1):
         ahead = np.minimum(step * stride, length)
-        move = (ahead - gone)[:, None] * direction
+        slid = (ahead - gone)[:, None] * direction
+        turned, angle = (ahead - gone) / length * turn, ahead / length * turn
         gone = ahead
-        touched = mechanics.touched(pucks[:, :2] - gone[:, None] * direction, move)
+        slid_so_far = gone[:, None] * direction
+        at = _rotated(pucks[:, :2] - slid_so_far - pivot, -angle) + pivot
+        touched = mechanics.touched(at, slid, turned, pivot)
         if touched.rows.size:
-            pucks[touched.rows] += mechanics.answer(touched)
+            answer = mechanics.answer(touched, turned[touched.rows])
+            answer[:, :2] = _rotated(answer[:, :2], angle[touched.rows])
+            pucks[touched.rows] += answer
     return pucks

@@ -142,7 +142,7 @@ def test_a_motion_stops_where_the_reach_ends(start: Point, towards: Point, lengt
 
 
 def test_a_motion_across_the_inner_edge_stops_before_it_although_its_end_is_in_reach() -> None:
-    ring = Reach(inner=5.0, outer=18.0, waist_max=math.radians(90.0))
+    ring = Reach(5.0, 18.0, -math.radians(90.0), math.radians(90.0))
     start, end = Point(6.0, 0.5), Point(-6.0, 0.5)
     assert ring.holds(start)
     assert ring.holds(end)

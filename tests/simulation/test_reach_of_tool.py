@@ -23,9 +23,9 @@ PAPER_REACH = reach_at(ARM, ARM.flange_height)
 TOOLS = paper_tools(WORKSPACE.tools)
 CLOSE_CALL = 0.05
 """Within this of the limit either answer is right (in)."""
-NARROW = Reach(6.0, 15.0, math.radians(35.0))
-DISC = Reach(0.0, 12.0, math.radians(90.0))
-SLIT = Reach(11.0, 11.5, math.radians(60.0))
+NARROW = Reach(6.0, 15.0, -math.radians(35.0), math.radians(35.0))
+DISC = Reach(0.0, 12.0, -math.radians(90.0), math.radians(90.0))
+SLIT = Reach(11.0, 11.5, -math.radians(60.0), math.radians(60.0))
 reaches = st.sampled_from([PAPER_REACH, PAPER_REACH, NARROW, DISC, SLIT])
 names = st.sampled_from(sorted(TOOL_PARTS))
 
