@@ -21,6 +21,7 @@ from affcli.report.words import (
     many,
     movement_words,
     parts_words,
+    plan_words,
     reasons_words,
     settings_words,
     trial_words,
@@ -78,6 +79,7 @@ def step_lines(step: StepRecord, goal: Goal) -> tuple[str, ...]:
     return (
         f"attractor at ({x:.1f}, {y:.1f}), {now:.1f} in from the goal's centre",
         reasons_words(step.reasons),
+        *plan_words(step.reasons),
         *regrasped,
         f"re-positioning: {travel:.1f} in; should end {then:.1f} in from the centre",
         f"{moved}: {verdict_words(step)}",
@@ -113,7 +115,7 @@ def trial_json(spec: TrialSpec, end: TrialEnd, steps: Steps | None = None) -> di
     }
     if steps is not None:
         left = end.last_reasons
-        value["reasons_at_end"] = None if left is None else [one._asdict() for one in left]
+        value["reasons_at_end"] = None if left is None else [one.json() for one in left]
         value["explain"] = [step_json(row, record, spec.task.goal) for row, record in steps]
     return value
 
@@ -131,7 +133,7 @@ def step_json(row: int, record: StepRecord, goal: Goal) -> dict[str, Any]:
         "step": record.number,
         "row": row,
         "behavior": str(record.row.exploratory),
-        "reasons": [reason._asdict() for reason in record.reasons],
+        "reasons": [reason.json() for reason in record.reasons],
         "regrasped": record.regrasped,
         "placing": record.placing.status.value,
         "distance_to_goal": now,
