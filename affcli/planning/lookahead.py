@@ -41,6 +41,9 @@ REPOSITIONING = 0.02
 NO_WAY, DEAD_END = 1e3, 1e5
 """Steps that are added to a path that does not lead to the goal, and to one after which no row can
 be used: both are more than any path has."""
+FURTHER = 1.0
+"""Steps that it costs on top to use a row whose behavior met the edge of the reach where it will
+not: where that ends is not known, and a further step has to make up for it."""
 LOOKED_AT = 40
 """Of the paths that do not lead to the goal so many are looked at for whether a row is left."""
 CLOSE = 3
@@ -196,16 +199,16 @@ class _Search:
             begins: there are no moves yet.
         """
         x, y, reaches = before.x[kept], before.y[kept], self._situation.reaches
-        place, row, x, y = self._model.ends(rows, x, y, reaches)
+        place, row, x, y, further = self._model.ends(rows, x, y, reaches)
         parent = kept[place]
         first = row if begins else before.first[parent]
-        cost = before.cost[parent] + self._steps[row]
+        cost = before.cost[parent] + self._steps[row] + FURTHER * further
         at = self._situation.seen.object_position
         away = np.sqrt(self._situation.goal.squared_distance(at, x - at.x, y - at.y))
-        carried = self._carried[first]
+        carried, arrived = self._carried[first], self._goal.hold(x, y)
         there = cost + STEPS_INSIDE * (away + carried)
         elsewhere = NO_WAY + cost + STEPS_TO_GO * (away + carried)
-        worth = np.where(self._goal.hold(x, y), there, elsewhere)
+        worth = np.where(arrived, there, elsewhere)
         return _Layer(x, y, cost, first, row, parent, worth)
 
     def _avoid_dead_ends(self) -> None:

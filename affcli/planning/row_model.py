@@ -19,6 +19,8 @@ CELL, LARGEST_CELL = 0.25, 16.0
 HALVINGS = 6
 """Of a way that leaves the reach: its end is known to a 64th of the way, 0.08 of 5 in."""
 
+BEYOND = 0.5
+"""A wrist that can go so far (in) beyond the end of a truncated row's way will go on."""
 SIDE = 1_000_003
 """More cells than lie side by side on any table."""
 
@@ -32,12 +34,15 @@ class Ends(NamedTuple):
         place: from which of the places (n,).
         row: which row, by its position in the table (n,).
         x, y: where the attractor is expected to be then (n,) (in, table frame).
+        further: the wrist will go on from where it met the edge of the reach when the row was made,
+            and nobody knows what that does (n,).
     """
 
     place: Rows
     row: Rows
     x: Floats
     y: Floats
+    further: NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +58,7 @@ class RowModel:
         movement_x, movement_y: expected movement (n,) (in).
         travel_x, travel_y: how far the wrist goes (n,) (in).
         kind: rows of the same behavior and parameter, held the same, have the same number (n,).
+        truncated: the behavior met the edge of the reach and stopped there (n,).
         spread: how far movements differ from the expected one: root of the mean squared distance
             (n,) (in); 0 where it is not looked at.
     """
@@ -64,6 +70,7 @@ class RowModel:
     travel_x: Floats
     travel_y: Floats
     kind: Rows
+    truncated: NDArray[np.bool_]
     spread: Floats
 
     @classmethod
@@ -80,8 +87,15 @@ class RowModel:
         number = {call: i for i, call in enumerate(dict.fromkeys(calls))}
         kind = np.array([number[call] for call in calls], dtype=np.intp)
         return cls(
-            *(table.offset_x, table.offset_y, table.movement_x, table.movement_y),
-            *(travel_x, travel_y, kind, np.zeros(len(rows))),
+            offset_x=table.offset_x,
+            offset_y=table.offset_y,
+            movement_x=table.movement_x,
+            movement_y=table.movement_y,
+            travel_x=travel_x,
+            travel_y=travel_y,
+            kind=kind,
+            truncated=np.array([row.truncated for row in rows], dtype=bool),
+            spread=np.zeros(len(rows)),
         )
 
     def thinned(self, rows: Rows, most: int) -> Rows:
@@ -114,17 +128,24 @@ class RowModel:
         wrist_y = (y[:, None] - self.offset_y[rows]).ravel()
         usable = np.flatnonzero(reaches(wrist_x, wrist_y))
         place, column = np.divmod(usable, max(len(rows), 1))
-        row = rows[column]
-        gone = self._share_gone(row, wrist_x[usable], wrist_y[usable], reaches)
+        row, x_from, y_from = rows[column], wrist_x[usable], wrist_y[usable]
+        gone = self._share_gone(row, x_from, y_from, reaches)
         whole = np.hypot(self.movement_x[row], self.movement_y[row])
         travel = np.hypot(self.travel_x[row], self.travel_y[row])
         length = whole - (1.0 - gone) * travel
+        further = np.zeros(len(row), dtype=bool)
+        cut = np.flatnonzero(self.truncated[row])
+        on = 1.0 + BEYOND / np.maximum(travel[cut], BEYOND)
+        further[cut] = reaches(
+            x_from[cut] + on * self.travel_x[row[cut]], y_from[cut] + on * self.travel_y[row[cut]]
+        )
         moved = np.flatnonzero(length > MOVEMENT_THRESHOLD)
         place, row, scale = place[moved], row[moved], length[moved] / whole[moved]
         return Ends(
             *(place, row),
             x[place] + scale * self.movement_x[row],
             y[place] + scale * self.movement_y[row],
+            further[moved],
         )
 
     def _share_gone(self, row: Rows, x: Floats, y: Floats, reaches: Reaches) -> Floats:
