@@ -7,7 +7,7 @@ made by `simulation.sensing`, which must know it, too.
 import math
 import pkgutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cache
+from functools import cache, partial
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
@@ -179,8 +179,26 @@ def explorer(chosen: Component, setting: "Setting", settings: "Settings") -> "Ex
 
 def world(chosen: Component, settings: "Settings") -> "World":
     """Return the world that a component names, with all sets of tasks that there are."""
-    task_sets = {one.name: one.build for one in parts("tasks").values()}
-    return _built("worlds", chosen)(settings, task_sets)  # type: ignore[no-any-return]
+    return _built("worlds", chosen)(settings, _TaskSets())  # type: ignore[no-any-return]
+
+
+class _TaskSets(Mapping[str, Callable[..., Any]]):
+    """What makes the tasks of each set that there is now, by the text of its component."""
+
+    def __init__(self) -> None:
+        self._parts = dict(parts("tasks"))
+
+    def __getitem__(self, text: str) -> Callable[..., Any]:
+        """Return what builds a set with the parameters that the text gives; KeyError for none."""
+        chosen = Component.parse(text)
+        found = self._parts[chosen.name]
+        return partial(found.build, **found.values(chosen))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._parts)
+
+    def __len__(self) -> int:
+        return len(self._parts)
 
 
 def recorded(kind: Kind, chosen: Component) -> Part:

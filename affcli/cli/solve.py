@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from affcli import lab
+from affcli import lab, registry
 from affcli.cli.database import learned_runs, opened, say_trials
 from affcli.cli.options import (
     DEFAULT_DATABASE,
@@ -17,17 +17,30 @@ from affcli.cli.options import (
     Seed,
     TaskSet,
     TrialSensor,
+    check_count,
 )
 from affcli.cli.terminal import now, show, show_either
 from affcli.core.task import ALL_STARTS
-from affcli.report.trials import explain_trial, solve_table, trial_json
+from affcli.errors import UsageError
+from affcli.report.trials import (
+    explain_trial,
+    solve_table,
+    task_json,
+    tasks_table,
+    trial_json,
+)
 
 
 def solve(
     *,
     goal: Annotated[
-        str, typer.Option("--goal", help="Its name: 1 to 4 are the paper's.", metavar="NAME")
-    ],
+        str | None,
+        typer.Option(
+            "--goal",
+            help="Its name: 1 to 4 are the paper's; of other tasks else all.",
+            metavar="NAME",
+        ),
+    ] = None,
     tool: Annotated[
         str | None,
         typer.Option("--tool", help="One tool; all learned ones if not given.", metavar="NAME"),
@@ -37,6 +50,10 @@ def solve(
         str, typer.Option("--start", help="Its name, or all.", metavar="NAME")
     ] = ALL_STARTS,
     task: TaskSet = DEFAULT_TASKS,
+    count: Annotated[
+        int | None,
+        typer.Option("--n", help="How many random tasks.", metavar="N", parser=check_count("--n")),
+    ] = None,
     planner: Planner = DEFAULT_PLANNER,  # type: ignore[assignment]  # parsed like any other
     seed: Seed = 0,
     sensor: TrialSensor = None,
@@ -51,7 +68,7 @@ def solve(
     Every step updates the counters of the row it used in the stored table. Exit code 1 only when a
     single start was asked for and not solved.
     """
-    wanted = lab.solving.WantedTasks(task, goal, start)
+    wanted = lab.solving.WantedTasks(_tasks(task, goal, count), goal, start)
     trials: list[lab.solving.SolvedTrial] = []
     with opened(database, write=True) as store:
         runs = learned_runs(store, tool, database, run)
@@ -65,10 +82,29 @@ def solve(
         results=lambda: [
             {"trial": one.id, "run": used[one.trial.tool].id}
             | trial_json(one.trial, one.end, one.steps if explain else None)
+            | ({} if goal is not None else task_json(one.whole))
             for one in trials
         ],
-        tables=lambda: [solve_table([(one.trial, one.end) for one in trials], used)],
+        tables=lambda: [
+            solve_table([(one.trial, one.end) for one in trials], used)
+            if goal is not None
+            else tasks_table([one.whole for one in trials], used)
+        ],
     )
     numbers = [one.id for one in trials]
     say_trials(numbers, numbers[-1], database)
     return 0 if start == ALL_STARTS or all(one.solved for one in trials) else 1
+
+
+def _tasks(task: str, goal: str | None, count: int | None) -> str:
+    """Return which set of tasks is meant.
+
+    Raises:
+        UsageError: of the paper's tasks no goal is named: all of them are of `affcli reproduce`.
+        BadInputError: the set has another number of tasks than one may ask for.
+    """
+    chosen = registry.component("tasks", task)
+    if goal is None and chosen.name == DEFAULT_TASKS:
+        raise UsageError("Missing option '--goal'; or give --task anywhere")
+    given = dict(chosen.params) | ({} if count is None else {"n": count})
+    return str(registry.part("tasks", chosen.name).component(given))

@@ -1,7 +1,8 @@
 """The affordance table in memory: rows in the order they were made, with columns for the query."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,8 @@ from affcli.core.observation import Observation
 
 Rows = NDArray[np.intp]
 """Positions of rows in a table, in ascending order: lower is older."""
+
+Made = TypeVar("Made")
 
 COLOR_TOLERANCE = 45.0
 """Two colours are consistent when they differ by at most this much in RGB (Euclidean, 0 to 255).
@@ -47,6 +50,7 @@ class AffordanceTable:
         self._class_of, self._class_colors = _color_classes(self._rows)
         self._all = np.arange(len(self._rows))
         self._all.flags.writeable = False
+        self._made: dict[object, Any] = {}
 
     def __len__(self) -> int:
         return len(self._rows)
@@ -70,6 +74,19 @@ class AffordanceTable:
         twin.times_successful = self.times_successful.copy()
         twin.probable = self.probable.copy()
         return twin
+
+    def once(self, key: object, make: Callable[["AffordanceTable"], Made]) -> Made:
+        """Return what is made of the columns of what was learned, which never change: made when it
+        is first asked for, and shared by all tables of the same rows.
+
+        Args:
+            key: names it, with all else that it depends on.
+            make: makes it; what it gives is left as it is, and no counter enters it.
+        """
+        if key not in self._made:
+            self._made[key] = make(self)
+        made: Made = self._made[key]
+        return made
 
     def with_colors_of(self, seen: Observation) -> Rows:
         """Return the rows whose object and tool colours are consistent with `seen`, to be read."""

@@ -1,8 +1,8 @@
 """What a planner is given, and what it answers: a row, and the reasons for it (§6.2)."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,18 +41,48 @@ class Situation:
     holding: BehaviorCall | None = None
 
 
+class Move(NamedTuple):
+    """One move of a plan: a row, and where it is expected to leave the attractor.
+
+    Args:
+        step: the step of the learning run that made the row.
+        behavior: the row's exploratory behavior, as `BehaviorCall` writes it.
+        x, y: where the attractor is expected to be then (in, table frame).
+    """
+
+    step: int
+    behavior: str
+    x: float
+    y: float
+
+
 class Reason(NamedTuple):
     """One thing that a planner went by, in the order in which it did.
 
     Args:
         name: what, in a word: ``probable``.
         rows: how many rows it left; None when it left none out.
-        value: the number it went by, where there is one (in, or a share).
+        value: the number it went by, where there is one (in, steps, or a share).
+        moves: a plan that it weighed, the move of this step first; empty where it weighed none.
     """
 
     name: str
     rows: int | None = None
     value: float | None = None
+    moves: tuple[Move, ...] = ()
+
+    def json(self) -> dict[str, Any]:
+        """Return the reason as JSON types; without moves where there are none."""
+        value = self._asdict()
+        moves = [move._asdict() for move in value.pop("moves")]
+        return {**value, "moves": moves} if moves else value
+
+    @classmethod
+    def from_json(cls, value: Mapping[str, Any]) -> "Reason":
+        """Return the reason that `json` wrote; what a newer affcli says beside that is left out."""
+        known = {name: value[name] for name in cls._fields if name in value}
+        moves = tuple(Move(**{n: one[n] for n in Move._fields}) for one in known.pop("moves", ()))
+        return cls(**known, moves=moves)
 
 
 Reasons = tuple[Reason, ...]
@@ -77,7 +107,8 @@ class Choice(NamedTuple):
 
     Args:
         position: of the row chosen in the table; None when no row is left.
-        reasons: what it went by, an open list.
+        reasons: what it went by, an open list; the first with moves is the plan that it follows,
+            the others are those that came close.
     """
 
     position: int | None

@@ -51,7 +51,7 @@ def break_tool(
     """
     learned = run.spec
     world, kind = world_of(learned), sensor or learned.sensor
-    tasks = tasks_of(world, task_set)
+    tasks = tasks_of(world, task_set, seed)
     table, ids = store.learning.table(run.id, as_learned=True)
     lost = world.lost_rows(learned, left, store.learning.row_starts(run.id))
     planned = [

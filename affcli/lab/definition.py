@@ -269,9 +269,9 @@ def _parts(key: str, value: object) -> str | list[str]:
         raise BadInputError(f"{one_line(value, 40)} must be {kind}")
     found = []
     for text in texts:
-        own = text if key == "tasks" else registry.component(NAMED[key], text)
-        if key == "tasks" and text != ADAPTATION:
+        if key == "tasks" and not {":", "@"} & set(text):
             one_of("tasks", text, [*registry.parts("tasks"), ADAPTATION])
+        own = text if text == ADAPTATION else registry.component(NAMED[key], text)
         # What of a binding is left out, the sizes of the tools decide: it stays as it is written.
         found.append(text if key == "binding" else str(own))
     for one, other in combinations(found, 2):
@@ -295,7 +295,7 @@ def _condition(name: str, said: Said) -> tuple[Condition, dict[str, Any]]:
     )
     world = condition.world
     for task_set in condition.tasks:
-        tasks_of(world, ADAPTATION_TASKS if task_set == ADAPTATION else task_set)
+        tasks_of(world, ADAPTATION_TASKS if task_set == ADAPTATION else task_set, 0)
     for tool in (*condition.tools, BROKEN_SHAPE):
         parts.tool(tool)
     _require_use(condition.tools, condition.tasks)

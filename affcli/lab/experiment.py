@@ -26,7 +26,7 @@ from affcli.core.specs import (
 )
 from affcli.core.world import World
 from affcli.lab.learning_run import LearningRun
-from affcli.lab.run_parts import RunParts, settings_of, world_of
+from affcli.lab.run_parts import RunParts, settings_of, tasks_of, world_of
 from affcli.lab.trials import trial_specs, whole_trial
 
 ADAPTATION = "adaptation"
@@ -133,7 +133,12 @@ class _Learned:
         for tasks in condition.tasks:
             if tasks != ADAPTATION:
                 for trial in trial_specs(
-                    *(Protocol.EXTENSION_OF_REACH, spec, spec.held, world.tasks(tasks)),
+                    *(
+                        Protocol.EXTENSION_OF_REACH,
+                        spec,
+                        spec.held,
+                        tasks_of(world, tasks, spec.seed),
+                    ),
                     *(spec.seed, spec.sensor, condition.planner, world),
                 ):
                     yield whole_trial(trial, spec, self.table, world)
@@ -141,7 +146,12 @@ class _Learned:
                 left = condition.parts.tool(BROKEN_SHAPE)
                 lost = world.lost_rows(spec, left, self._row_starts())
                 for trial in trial_specs(
-                    *(Protocol.TOOL_ADAPTATION, spec, left, world.tasks(ADAPTATION_TASKS)),
+                    *(
+                        Protocol.TOOL_ADAPTATION,
+                        spec,
+                        left,
+                        tasks_of(world, ADAPTATION_TASKS, spec.seed),
+                    ),
                     *(spec.seed, spec.sensor, condition.planner, world),
                 ):
                     yield whole_trial(trial, spec, self.table, world, lost)

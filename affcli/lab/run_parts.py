@@ -160,13 +160,27 @@ def require_shape(tool: Tool, where: str = "") -> None:
         )
 
 
-def tasks_of(world: World, task_set: str) -> tuple[Task, ...]:
-    """Return the tasks of a set; UsageError when there is no set of this name."""
-    name = registry.part("tasks", task_set).name
+def tasks_of(world: World, task_set: str, seed: int) -> tuple[Task, ...]:
+    """Return the tasks of a set.
+
+    Args:
+        world: where they are to be done.
+        task_set: its name, maybe with parameters, as ``name:key=value``.
+        seed: of what they are drawn by, where the set has such a parameter and does not give it.
+
+    Raises:
+        UsageError: there is no set of this name.
+        BadInputError: a wrong parameter.
+    """
+    chosen = registry.component("tasks", task_set)
+    found = registry.recorded("tasks", chosen)
+    drawn = {"seed": seed} if "seed" in found.params else {}
     try:
-        return world.tasks(name)
+        return world.tasks(str(found.component({**drawn, **dict(chosen.params)})))
     except KeyError:
-        raise UsageError(f"the world {world.name} has no tasks {name}; choose others") from None
+        raise UsageError(
+            f"the world {world.name} has no tasks {chosen.name}; choose others"
+        ) from None
 
 
 def require_world_version(made: Component) -> None:

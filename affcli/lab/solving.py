@@ -24,19 +24,26 @@ class WantedTasks:
 
     Args:
         task_set: of this set.
-        goal: those with the goal of this name.
+        goal: those with the goal of this name; None for all goals.
         start: those from the start of this name; from all for `ALL_STARTS`.
     """
 
     task_set: str
-    goal: str
+    goal: str | None = None
     start: str = ALL_STARTS
 
-    def among(self, world: World) -> list[Task]:
-        """Return the tasks of a world that are meant; UsageError when there are none."""
-        known = tasks_of(world, self.task_set)
-        goal = one_of("goal", self.goal, dict.fromkeys(task.goal.name for task in known))
-        tasks = [task for task in known if task.goal.name == goal]
+    def among(self, world: World, seed: int) -> list[Task]:
+        """Return the tasks of a world that are meant; UsageError when there are none.
+
+        Args:
+            world: where they are to be done.
+            seed: of those that are drawn.
+        """
+        known = tasks_of(world, self.task_set, seed)
+        tasks = list(known)
+        if self.goal is not None:
+            goal = one_of("goal", self.goal, dict.fromkeys(task.goal.name for task in known))
+            tasks = [task for task in known if task.goal.name == goal]
         starts = [task.start_name for task in tasks]
         start = one_of("start", self.start, [*starts, ALL_STARTS])
         return [task for task in tasks if start in (task.start_name, ALL_STARTS)]
@@ -62,6 +69,11 @@ class SolvedTrial:
     def solved(self) -> bool:
         """Whether the attractor was brought over the goal region."""
         return self.end.outcome is Outcome.SOLVED
+
+    @property
+    def whole(self) -> tuple[TrialSpec, TrialEnd, tuple[StepRecord, ...]]:
+        """The trial with its steps: what is measured of it."""
+        return self.trial, self.end, tuple(record for _, record in self.steps)
 
 
 def solve(
@@ -100,7 +112,7 @@ def solve(
     for run in runs:
         world, kind = world_of(run.spec), sensor or run.spec.sensor
         specs = trial_specs(
-            *(Protocol.EXTENSION_OF_REACH, run.spec, run.spec.held, wanted.among(world)),
+            *(Protocol.EXTENSION_OF_REACH, run.spec, run.spec.held, wanted.among(world, seed)),
             *(seed, kind, planner, world),
         )
         # A camera that is not there, or cannot be calibrated, is found before anything is recorded.

@@ -53,6 +53,45 @@ def wrist_within_reach(
     return those(rows, reached)
 
 
+def usable_rows(situation: Situation, threshold: float) -> tuple[Rows, Rows, Reasons]:
+    """Run searches 1 and 2, and keep of these rows those whose wrist position is within reach.
+
+    Args:
+        situation: where the robot stands.
+        threshold: as in `likely_to_succeed`.
+
+    Returns:
+        The rows that searches 1 and 2 leave, those of them within reach, and how many each left.
+    """
+    table, seen = situation.table, situation.seen
+    consistent = consistent_with_colors(table, seen)
+    probable = likely_to_succeed(table, consistent, threshold)
+    reachable = wrist_within_reach(table, probable, seen, situation.reaches)
+    reasons = (
+        Reason("consistent", len(consistent)),
+        Reason("probable", len(probable), threshold),
+        Reason("reachable", len(reachable)),
+    )
+    return probable, reachable, reasons
+
+
+def nearer_to_goal(
+    table: AffordanceTable, rows: Rows, seen: Observation, goal: Goal, least: float
+) -> Rows:
+    """Keep the rows that are expected to leave the attractor more than `least` (in) nearer to the
+    goal than it is; all when there are none.
+
+    Not in the paper's list. Without it search 4 may take a row that leads away: the top 20 % of a
+    table that has few rows for a place are not all good ones.
+    """
+    moved = table.movement_x[rows], table.movement_y[rows]
+    then = np.sqrt(goal.squared_distance(seen.object_position, *moved))
+    still = np.zeros(1)
+    now = math.sqrt(goal.squared_distance(seen.object_position, still, still)[0])
+    nearer = now - then > least
+    return those(rows, nearer) if nearer.any() else rows
+
+
 def top_by_expected_distance(
     table: AffordanceTable, rows: Rows, seen: Observation, goal: Goal, share: float = TOP_SHARE
 ) -> Rows:
@@ -96,11 +135,14 @@ class NestedQuery:
         share: of the sorted rows that search 4 chooses from.
         threshold: search 2 keeps rows with a replication probability greater than this.
         angle_degrees: a use replicates when the movement seen is within this angle (§5.2).
+        guard: search 3 sorts only rows that are expected to end more than this nearer to the goal
+            (in); all when there are none, or when this is 0, as in the paper.
     """
 
     share: float = TOP_SHARE
     threshold: float = PROBABILITY_THRESHOLD
     angle_degrees: float = REPLICATION_ANGLE_DEGREES
+    guard: float = 0.0
 
     def choose(self, situation: Situation) -> Choice:
         """Run the searches and say how many rows each left."""
@@ -124,18 +166,28 @@ class NestedQuery:
 
     def _first_three(self, situation: Situation) -> tuple[Rows, Reasons]:
         """Run searches 1 to 3 and the arm's reach; return what is left, and how many each left."""
-        table, seen = situation.table, situation.seen
-        consistent = consistent_with_colors(table, seen)
-        probable = likely_to_succeed(table, consistent, self.threshold)
-        reachable = wrist_within_reach(table, probable, seen, situation.reaches)
-        nearest = top_by_expected_distance(table, reachable, seen, situation.goal, self.share)
-        return nearest, (
-            Reason("consistent", len(consistent)),
-            Reason("probable", len(probable), self.threshold),
-            Reason("reachable", len(reachable)),
-            Reason("nearest", len(nearest), self.share),
-        )
+        table, seen, goal = situation.table, situation.seen, situation.goal
+        _, rows, reasons = usable_rows(situation, self.threshold)
+        if self.guard > 0.0:
+            rows = nearer_to_goal(table, rows, seen, goal, self.guard)
+            reasons = (*reasons, Reason("nearer", len(rows), self.guard))
+        nearest = top_by_expected_distance(table, rows, seen, goal, self.share)
+        return nearest, (*reasons, Reason("nearest", len(nearest), self.share))
 
+
+JUDGING = {
+    "threshold": Setting(
+        *(PROBABILITY_THRESHOLD, ""),
+        "Search 2 keeps rows with a replication probability greater than this.",
+        *(0.0, 0.999),
+    ),
+    "angle_degrees": Setting(
+        *(REPLICATION_ANGLE_DEGREES, "degrees"),
+        "A use replicates when the movement seen is within this angle of the row's.",
+        *(1.0, 180.0),
+    ),
+}
+"""How a planner judges rows: parameters that all of them have."""
 
 PARTS = (
     Part(
@@ -149,15 +201,11 @@ PARTS = (
             "share": Setting(
                 TOP_SHARE, "", "Of the sorted rows that search 4 chooses from.", 0.001, 1.0
             ),
-            "threshold": Setting(
-                *(PROBABILITY_THRESHOLD, ""),
-                "Search 2 keeps rows with a replication probability greater than this.",
-                *(0.0, 0.999),
-            ),
-            "angle_degrees": Setting(
-                *(REPLICATION_ANGLE_DEGREES, "degrees"),
-                "A use replicates when the movement seen is within this angle of the row's.",
-                *(1.0, 180.0),
+            **JUDGING,
+            "guard": Setting(
+                *(0.0, "in"),
+                "Search 3 sorts only rows that should end so much nearer to the goal; 0: all.",
+                *(0.0, 30.0),
             ),
         },
     ),

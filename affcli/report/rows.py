@@ -244,7 +244,7 @@ def _use_json(step: StoredStep, trial: TrialSpec) -> dict[str, Any]:
         "counters": trial.counters.value,
         "planner": str(trial.planner),
         "step": step.number,
-        "reasons": [reason._asdict() for reason in step.reasons],
+        "reasons": [reason.json() for reason in step.reasons],
         "regrasped": step.regrasped,
         "placing_status": step.placing_status,
         "status": step.status,

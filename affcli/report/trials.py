@@ -10,6 +10,7 @@ from rich.text import Text
 
 from affcli.analysis.overview import GoalCounts
 from affcli.analysis.paper import GOALS, PLANNER, STARTS, TASK_SET, other_parts, papers_successes
+from affcli.analysis.tasks import TaskSums, Trial, error_of, final_distance
 from affcli.core.goal import Goal
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import TrialSpec
@@ -17,10 +18,12 @@ from affcli.core.trial import Outcome, StepRecord, TrialEnd, is_counted
 from affcli.report.sheet import Sheet
 from affcli.report.words import (
     call_words,
+    fixed,
     in_order,
     many,
     movement_words,
     parts_words,
+    plan_words,
     reasons_words,
     settings_words,
     trial_words,
@@ -78,6 +81,7 @@ def step_lines(step: StepRecord, goal: Goal) -> tuple[str, ...]:
     return (
         f"attractor at ({x:.1f}, {y:.1f}), {now:.1f} in from the goal's centre",
         reasons_words(step.reasons),
+        *plan_words(step.reasons),
         *regrasped,
         f"re-positioning: {travel:.1f} in; should end {then:.1f} in from the centre",
         f"{moved}: {verdict_words(step)}",
@@ -113,7 +117,7 @@ def trial_json(spec: TrialSpec, end: TrialEnd, steps: Steps | None = None) -> di
     }
     if steps is not None:
         left = end.last_reasons
-        value["reasons_at_end"] = None if left is None else [one._asdict() for one in left]
+        value["reasons_at_end"] = None if left is None else [one.json() for one in left]
         value["explain"] = [step_json(row, record, spec.task.goal) for row, record in steps]
     return value
 
@@ -131,7 +135,7 @@ def step_json(row: int, record: StepRecord, goal: Goal) -> dict[str, Any]:
         "step": record.number,
         "row": row,
         "behavior": str(record.row.exploratory),
-        "reasons": [reason._asdict() for reason in record.reasons],
+        "reasons": [reason.json() for reason in record.reasons],
         "regrasped": record.regrasped,
         "placing": record.placing.status.value,
         "distance_to_goal": now,
@@ -181,6 +185,51 @@ def solve_table(
         beside = f"{paper[tool]}/{STARTS}" if paper[tool] is not None else "-"
         table.add(tool, *cells, f"{solved}/{tried}", *((beside,) if compared else ()))
     return table
+
+
+def tasks_table(trials: Sequence[Trial], runs: Mapping[str, LearningRunInfo]) -> Sheet:
+    """Return what trials of many goals came to: a row for each tool.
+
+    Args:
+        trials: with their steps.
+        runs: the learning run whose table was used, by tool.
+    """
+    first = trials[0][0]
+    tools = dict.fromkeys(spec.tool for spec, _, _ in trials)
+    sums = {tool: TaskSums.of([one for one in trials if one[0].tool == tool]) for tool in tools}
+    failures = [kind for kind in Outcome if any(kind in one.failures for one in sums.values())]
+    used = [_used_words(runs[tool], first) for tool in tools]
+    table = Sheet(
+        ("tool", "solved", "steps", "seconds", "in off", "error, in", *failures),
+        title=f"{first.task_set}: {many(len(trials), 'trial')}, planner {first.planner}",
+        caption="; ".join(
+            (
+                ", ".join(used),
+                "steps: of a solved trial; in off: from the goal's centre at the end, the median",
+                "error: of where a step was expected to end",
+            )
+        ),
+        left=("tool",),
+    )
+    for tool, one in sums.items():
+        means = ((one.steps, 1), (one.seconds, 0), (one.distance, 2), (one.error, 2))
+        cells = ("-" if value is None else fixed(value, digits) for value, digits in means)
+        counts = (str(one.failures.get(kind, 0)) for kind in failures)
+        table.add(tool, f"{one.solved}/{one.tried}", *cells, *counts)
+    return table
+
+
+def task_json(trial: Trial) -> dict[str, Any]:
+    """Return as JSON types what of a trial tells planners apart beside how it ended."""
+    spec, _, steps = trial
+    (x, y), (goal_x, goal_y) = spec.task.start, spec.task.goal.center
+    return {
+        "tasks": spec.task_set,
+        "start_at": [x, y],
+        "goal_at": [goal_x, goal_y],
+        "final_distance": final_distance(spec, steps),
+        "errors": [error_of(step) for step in steps],
+    }
 
 
 def _used_words(run: LearningRunInfo, spec: TrialSpec) -> str:

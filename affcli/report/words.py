@@ -9,7 +9,7 @@ from affcli.analysis.paper import PLANNER, other_parts
 from affcli.analysis.statistics import ENOUGH_ROBOTS, FEWEST
 from affcli.core.behavior import BehaviorCall
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
-from affcli.core.choice import Reason, Reasons
+from affcli.core.choice import Move, Reason, Reasons
 from affcli.core.geometry import direction_degrees
 from affcli.core.identity import shown
 from affcli.core.observation import Movement
@@ -104,11 +104,28 @@ def reason_words(reason: Reason) -> str:
 
 def reasons_words(reasons: Reasons, *, chosen: bool = True) -> str:
     """Return what a planner went by, and that it chose one row: ``rows left: 24 nearest, 1
-    chosen``.
+    chosen``. Plans are told by `plan_words`.
     """
-    words = [reason_words(reason) for reason in reasons] + ["1 chosen"] * chosen
-    counted = all(reason.rows is not None for reason in reasons)
+    weighed = [reason for reason in reasons if not reason.moves]
+    words = [reason_words(reason) for reason in weighed] + ["1 chosen"] * chosen
+    counted = all(reason.rows is not None for reason in weighed)
     return f"{'rows left' if counted else 'weighed'}: {', '.join(words)}"
+
+
+def plan_words(reasons: Reasons) -> list[str]:
+    """Return the plans that a planner weighed, a line for each: ``plan: extend arm 5 to (3.1,
+    22.0); 1.1 steps to the goal``. The numbers are expected ones.
+    """
+    return [
+        f"{one_line(reason.name, 40)}: {', '.join(map(_move_words, reason.moves))}"
+        + ("" if reason.value is None else f"; {reason.value:.1f} steps to the goal")
+        for reason in reasons
+        if reason.moves
+    ]
+
+
+def _move_words(move: Move) -> str:
+    return f"{one_line(move.behavior, 60)} to ({move.x:.1f}, {move.y:.1f})"
 
 
 def settings_words(settings: str) -> str:

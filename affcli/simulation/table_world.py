@@ -20,7 +20,7 @@ from affcli.core.specs import LearningSpec, RowStarts, TrialSpec, VerificationSp
 from affcli.core.task import Task
 from affcli.core.tool import Tool, hold_of
 from affcli.core.trial import Truth
-from affcli.core.workspace import TaskLayout, Workspace
+from affcli.core.workspace import Workspace
 from affcli.core.world import Film
 from affcli.perception.camera_settings import CameraSettings
 from affcli.perception.noisy_sensor import SensorSettings
@@ -29,11 +29,11 @@ from affcli.simulation.physics_settings import PhysicsSettings
 from affcli.simulation.robot import SimulatedRobot
 from affcli.simulation.sensing import SimulatedSight
 from affcli.simulation.table import Table
-from affcli.simulation.tasks.extension_of_reach import NAME, extension_of_reach
+from affcli.simulation.tasks.extension_of_reach import NAME, paper_tasks
 from affcli.simulation.worlds import TABLE, TABLE_VERSION
 
-TaskSet = Callable[[TaskLayout], tuple[Task, ...]]
-PAPER_TASKS: Mapping[str, TaskSet] = {NAME: extension_of_reach}
+TaskSet = Callable[[Workspace], tuple[Task, ...]]
+PAPER_TASKS: Mapping[str, TaskSet] = {NAME: paper_tasks}
 
 LEARNING, TRIAL, VERIFICATION, PREDICTION = 0, 1, 3, 4
 """First word of a random stream's key: what it is for. 2 is a camera's power-up (`sensing`)."""
@@ -164,7 +164,7 @@ class TableWorld:
 
     def tasks(self, task_set: str) -> tuple[Task, ...]:
         """Return the tasks of a set by its name; KeyError when there is no such set."""
-        return self._task_sets[task_set](self._settings.workspace.layout)
+        return self._task_sets[task_set](self._settings.workspace)
 
     def learning(self, spec: LearningSpec, *, laid_out: bool = True) -> TableSetting:
         """Lay out a learning run (§6); without `laid_out` a snapshot is restored next."""

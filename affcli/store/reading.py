@@ -89,10 +89,7 @@ def tool(name: str, definition: str | None) -> Tool:
 
 def reasons(text: str) -> Reasons:
     """Return what a planner went by; what a newer affcli says beside that is left out."""
-    return tuple(
-        Reason(**{name: one[name] for name in Reason._fields if name in one})
-        for one in json_value(text)
-    )
+    return tuple(Reason.from_json(one) for one in json_value(text))
 
 
 def pose(row: Columns, name: str) -> Pose:

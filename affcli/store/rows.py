@@ -186,7 +186,7 @@ def replication_row(
 
 def reasons_json(reasons: Reasons) -> str:
     """Return a planner's reasons as a list in JSON."""
-    return to_json([reason._asdict() for reason in reasons])
+    return to_json([reason.json() for reason in reasons])
 
 
 def _use(record: Attempt) -> Row:

@@ -95,7 +95,7 @@ class PlannerContract:
         for reason in choice.reasons:
             assert reason.name
             assert reason.rows is None or 0 <= reason.rows <= len(situation.table)
-            json.dumps(reason._asdict(), allow_nan=False)
+            json.dumps(reason.json(), allow_nan=False)
 
     def test_the_first_candidate_is_the_row_chosen(
         self, planner: Planner, situation: Situation

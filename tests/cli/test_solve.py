@@ -177,3 +177,37 @@ def test_an_unfinished_run_is_not_learned(empty: Path) -> None:
     assert "nothing learned with the t-hook" in refused(
         2, "solve", "--goal", "1", "--tool", "t-hook", "--db", empty
     )
+
+
+def test_random_tasks_are_the_same_for_every_planner_and_say_what_they_came_to(
+    learned: Path,
+) -> None:
+    asked = ("solve", "--task", "anywhere:half_width=1", "--n", "3", "--tool", "t-hook")
+    one, ahead = (
+        done(*asked, "--planner", planner, "--json", "--db", learned).results
+        for planner in ("one-step", "lookahead:depth=2")
+    )
+    assert [trial["start_at"] for trial in one] == [trial["start_at"] for trial in ahead]
+    assert [trial["goal_at"] for trial in one] == [trial["goal_at"] for trial in ahead]
+    for trial in (*one, *ahead):
+        assert trial["tasks"] == "anywhere:half_width=1,n=3"
+        assert len(trial["errors"]) == trial["steps"]
+        assert trial["final_distance"] <= math.sqrt(2.0) or trial["outcome"] != "solved"
+    table = done(*asked, "--db", learned).out
+    assert table.startswith("anywhere:half_width=1,n=3: 3 trials, planner nested-query")
+
+
+@pytest.mark.parametrize(
+    ("asked", "code", "says"),
+    [
+        (("--task", "anywhere", "--n", "0"), 4, "--n 0: must lie in 1 to"),
+        (("--goal", "1", "--n", "3"), 4, "extension-of-reach: no parameter n"),
+        (("--task", "anywhere:half_width=99"), 4, "half_width = 99 must lie in [0.1, 10] (in)"),
+        (("--task", "anywhere", "--goal", "21"), 2, "no goal '21'"),
+        (("--goal", "1", "--planner", "lookahead:depth=9"), 4, "depth = 9 must lie in [1, 8]"),
+    ],
+)
+def test_tasks_and_plans_that_cannot_be(
+    learned: Path, asked: tuple[str, ...], code: int, says: str
+) -> None:
+    assert says in refused(code, "solve", *asked, "--db", learned)

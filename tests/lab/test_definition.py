@@ -160,7 +160,7 @@ def test_as_many_conditions_as_there_may_be_can_be_stored(read: Any, store: Stor
         (f"{HEAD}[base]\nplaner = 'x'\n", "base: no key 'planer'; did you mean planner"),
         (
             f"{HEAD}[base]\nplanner = 'x'\n",
-            "base.planner: no planner 'x'; did you mean nested-query",
+            "base.planner: no planner 'x'; did you mean lookahead or nested-query",
         ),
         (f"{HEAD}[base]\nplanner = 3\n", "base.planner: 3 must be a name"),
         (f"{HEAD}[base]\ntools = []\n", "base.tools: [] must be names in a list"),

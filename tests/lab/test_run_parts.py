@@ -14,7 +14,7 @@ from affcli.core.part import Part
 from affcli.core.setting import Setting
 from affcli.core.task import GoalRegion, Task
 from affcli.core.tool import Tool, ToolName, unknown_tool
-from affcli.core.workspace import TaskLayout, ToolGeometry
+from affcli.core.workspace import ToolGeometry, Workspace
 from affcli.errors import AffcliError, BadInputError, DatabaseError, UsageError
 from affcli.lab.learning_run import LearningRun
 from affcli.lab.run_parts import (
@@ -93,7 +93,7 @@ def test_a_tool_is_the_one_that_was_learned_or_a_registered_one_in_the_runs_size
 
 def test_tasks_of_a_set_that_is_not_there() -> None:
     with pytest.raises(UsageError, match=r"no task 'juggling'.*affcli list tasks"):
-        tasks_of(world_of(LEARNED), "juggling")
+        tasks_of(world_of(LEARNED), "juggling", 0)
 
 
 BEHAVIOR = BehaviorCall.of(BehaviorName("juggle"), {})
@@ -148,10 +148,11 @@ def test_a_part_that_was_added_is_found_like_any_other(monkeypatch: pytest.Monke
     assert RunParts.chosen(Settings(), explorer="curious:patience=3").explorer.params == ()
 
 
-def near(layout: TaskLayout) -> tuple[Task, ...]:
+def near(workspace: Workspace) -> tuple[Task, ...]:
     """Return one task that the paper has not: a small goal beside the start."""
-    goal = GoalRegion("beside", Point(3.0, layout.midline), 1.0)
-    return (Task("near", goal, "middle", Point(0.0, layout.midline)),)
+    midline = workspace.layout.midline
+    goal = GoalRegion("beside", Point(3.0, midline), 1.0)
+    return (Task("near", goal, "middle", Point(0.0, midline)),)
 
 
 def test_a_set_of_tasks_is_there_as_soon_as_it_is_registered(
@@ -159,13 +160,13 @@ def test_a_set_of_tasks_is_there_as_soon_as_it_is_registered(
 ) -> None:
     part = Part(kind="tasks", name="near", summary="one task", source="a test", build=near)
     with pytest.raises(UsageError, match="near"):
-        tasks_of(world_of(LEARNED), "near")
+        tasks_of(world_of(LEARNED), "near", 0)
     before = world_of(LEARNED)
     register(monkeypatch, part)
-    (task,) = tasks_of(world_of(LEARNED), "near")
+    (task,) = tasks_of(world_of(LEARNED), "near", 0)
     assert (task.goal.name, task.start_name) == ("beside", "middle")
     with pytest.raises(UsageError, match="the world table has no tasks near"):
-        tasks_of(before, "near")
+        tasks_of(before, "near", 0)
 
 
 def pinching(geometry: ToolGeometry) -> BehaviorCall:

@@ -100,7 +100,7 @@ def _step(one: ReplayedStep) -> dict[str, Any]:
     record = one.step.record
     row = record.row
     return {
-        "reasons": [reason._asdict() for reason in record.reasons],
+        "reasons": [reason.json() for reason in record.reasons],
         "distance_to_goal": _rounded(distances(record, one.goal)[0])[0],
         "replicated": record.replicated,
         "excluded": record.died,

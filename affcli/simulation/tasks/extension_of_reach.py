@@ -3,7 +3,7 @@
 from affcli.core.geometry import Point
 from affcli.core.part import Part
 from affcli.core.task import GoalRegion, Task
-from affcli.core.workspace import TaskLayout
+from affcli.core.workspace import TaskLayout, Workspace
 
 NAME = "extension-of-reach"
 STARTS = 4
@@ -39,12 +39,17 @@ def extension_of_reach(layout: TaskLayout) -> tuple[Task, ...]:
     )
 
 
+def paper_tasks(workspace: Workspace) -> tuple[Task, ...]:
+    """Return the paper's 16 tasks at a table."""
+    return extension_of_reach(workspace.layout)
+
+
 PARTS = (
     Part(
         kind="tasks",
         name=NAME,
         summary="the paper's 16 tasks: goals 1 to 4, each from the starts 1 to 4",
         source="Stoytchev 2008, §7.1",
-        build=extension_of_reach,
+        build=paper_tasks,
     ),
 )

@@ -1,0 +1,194 @@
+"""Planning ahead: what rows are expected to do from elsewhere, and which path of them is taken."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from affcli import registry
+from affcli.core.affordance import Affordance
+from affcli.core.affordance_table import AffordanceTable
+from affcli.core.change_detection import MOVEMENT_THRESHOLD
+from affcli.core.choice import Choice, Reason, Situation
+from affcli.core.geometry import Point, Pose
+from affcli.core.task import GoalRegion
+from affcli.errors import BadInputError
+from affcli.planning.lookahead import Lookahead
+from affcli.planning.one_step import OneStep
+from affcli.planning.row_model import RowModel
+from tests.factories import affordance, goal_at, observation, places, situation, table_of
+from tests.fakes import FakeRobot, FakeTable, everywhere
+
+HERE = Point(0.0, 0.0)
+RIGHT, LEFT, AWAY = (5.0, 0.0), (-5.0, 0.0), (0.0, 5.0)
+
+
+def row(
+    step: int,
+    moved: tuple[float, float],
+    offset: Point = HERE,
+    *,
+    used: int = 1,
+    successful: int = 1,
+) -> Affordance:
+    """Return a row whose wrist goes as far as it moves the attractor."""
+    made = affordance(step, moved=moved, offset=offset, used=used, successful=successful)
+    return replace(made, travel=Point(*moved))
+
+
+def standing(
+    rows: list[Affordance],
+    goal: GoalRegion,
+    reachable: Callable[[Point], bool] = everywhere,
+    wrist: Point = HERE,
+) -> Situation:
+    """Return a robot whose attractor lies at (0, 0)."""
+    robot = FakeRobot(FakeTable(wrist=Pose(*wrist)), reachable=reachable)
+    return situation(AffordanceTable(rows), observation(HERE, wrist=HERE), goal, robot)
+
+
+def steps_of(choice: Choice) -> list[int]:
+    """Return the rows of the plan that is followed, by the steps that made them."""
+    plans = [reason for reason in choice.reasons if reason.moves]
+    return [move.step for move in plans[0].moves]
+
+
+@settings(deadline=None)
+@given(st.lists(st.tuples(places, places), min_size=1, max_size=8), places, st.integers(-40, 40))
+def test_a_row_is_expected_to_do_no_more_than_it_did_and_stops_where_the_reach_ends(
+    drawn: list[tuple[Point, Point]], at: Point, edge: int
+) -> None:
+    """Predicted travel: the row's own, or what the reach allows; the movement is shorter by as much
+    as the travel is."""
+    table = table_of(*(row(k, moved, offset) for k, (moved, offset) in enumerate(drawn)))
+    robot = FakeRobot(FakeTable(), reachable=lambda p: p.x <= edge)
+    model = RowModel.of(table)
+    ends = model.ends(np.arange(len(table)), np.array([at.x]), np.array([at.y]), robot.reaches)
+    found = dict(zip(ends.row.tolist(), zip(ends.x, ends.y, strict=True), strict=True))
+    for k, (moved, offset) in enumerate(drawn):
+        wrist, whole = at.x - offset.x, float(np.hypot(*moved))
+        room = (edge - wrist) / moved.x if moved.x > 0.0 else 1.0
+        length = whole * min(1.0, room)
+        error = whole / 64.0
+        if wrist > edge or length <= MOVEMENT_THRESHOLD - error:
+            assert k not in found
+        elif length > MOVEMENT_THRESHOLD + error:
+            x, y = found[k]
+            assert np.hypot(x - at.x, y - at.y) == pytest.approx(length, abs=error)
+            assert np.hypot(x - at.x, y - at.y) <= whole + 1e-9
+
+
+def test_the_model_of_a_table_is_that_of_its_rows_whatever_their_counters() -> None:
+    table = table_of(row(1, RIGHT), row(2, AWAY))
+    before = RowModel.of(table)
+    table.count_use(0, success=False)
+    assert RowModel.of(table) is before is RowModel.of(table.as_learned())
+
+
+def test_two_moves_are_found_where_the_best_single_one_leads_nowhere() -> None:
+    """Around a corner: the row that ends nearest leaves none that goes on."""
+    tempting, aside, last = (4.0, 3.0), AWAY, (6.0, 0.0)
+    rows = [
+        affordance(1, moved=tempting, offset=Point(9.0, 9.0)),
+        affordance(2, moved=aside, offset=HERE),
+        affordance(3, moved=last, offset=Point(0.0, 1.0)),
+    ]
+    here = standing(rows, goal_at(6.0, 5.0, 1.0), lambda p: p.x in (-9.0, 0.0))
+    assert OneStep().choose(here).position == 0
+    assert sorted(steps_of(Lookahead(depth=2).choose(here))) == [2, 3]
+
+
+def test_a_path_to_the_goal_of_fewer_moves_is_better() -> None:
+    rows = [row(1, RIGHT), row(2, AWAY), row(3, (5.0, 5.0))]
+    assert steps_of(Lookahead(depth=3).choose(standing(rows, goal_at(5.0, 5.0, 1.0)))) == [3]
+
+
+@pytest.mark.parametrize(("used", "successful", "taken"), [(2, 1, [1, 2]), (3, 2, [3])])
+def test_an_uncertain_row_costs_what_its_probability_says(
+    used: int, successful: int, taken: list[int]
+) -> None:
+    """Of probability 2/3 it takes 1.5 steps, which is less than two sure ones; of 1/2, two, and the
+    two end nearer."""
+    risky = row(3, (5.5, 5.0), used=used, successful=successful)
+    here = standing([row(1, RIGHT), row(2, AWAY), risky], goal_at(5.0, 5.0, 1.0))
+    found = steps_of(Lookahead(depth=2, threshold=0.1).choose(here))
+    assert sorted(found) == taken
+
+
+def test_an_end_that_leaves_no_row_is_avoided() -> None:
+    """Short of the goal, the nearest end is not the best where nothing can be done from there."""
+    rows = [row(1, (8.0, 0.0)), row(2, (4.0, 0.0))]
+    here = standing(rows, goal_at(30.0, 0.0), lambda p: p.x < 7.0)
+    assert Lookahead(depth=1).choose(here).position == 1
+
+
+def test_of_equally_good_paths_the_one_with_the_least_repositioning_is_taken() -> None:
+    rows = [row(1, RIGHT, Point(-3.0, 0.0)), row(2, RIGHT, Point(3.0, 0.0))]
+    for x, nearer in ((3.0, 0), (-3.0, 1)):
+        here = standing(rows, goal_at(5.0, 0.0), wrist=Point(x, 0.0))
+        assert Lookahead().choose(here).position == nearer
+
+
+def test_paths_that_end_near_each_other_count_as_one_and_still_the_goal_is_found() -> None:
+    rng = np.random.default_rng(0)
+    crowd = [row(k, tuple(rng.normal(RIGHT, 0.05))) for k in range(200)]
+    last = row(999, (0.0, 6.0))
+    here = standing([*crowd, last], goal_at(5.0, 6.0, 1.0))
+    for beam in (1, 3, 60):
+        assert len(steps_of(Lookahead(depth=2, beam=beam).choose(here))) == 2
+
+
+@settings(deadline=None, max_examples=40)
+@given(st.lists(st.tuples(places, places), min_size=1, max_size=10), places, st.integers(1, 3))
+def test_a_plan_ends_where_its_moves_lead_and_begins_with_the_row_chosen(
+    drawn: list[tuple[Point, Point]], goal: Point, depth: int
+) -> None:
+    rows = [row(k, moved, offset) for k, (moved, offset) in enumerate(drawn)]
+    choice = Lookahead(depth=depth).choose(standing(rows, goal_at(*goal)))
+    if choice.position is None:
+        assert all(np.hypot(*moved) <= MOVEMENT_THRESHOLD for moved, _ in drawn)
+        return
+    told = [reason for reason in choice.reasons if reason.moves]
+    assert told[0].moves[0].step == choice.position
+    assert len({reason.moves[0].step for reason in told}) == len(told)
+    for reason in told:
+        x = y = 0.0
+        for move in reason.moves:
+            dx, dy = drawn[move.step][0]
+            x, y = x + dx, y + dy
+            assert (move.x, move.y) == pytest.approx((x, y))
+        assert 1 <= len(reason.moves) <= depth
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.lists(st.tuples(places, places), min_size=1, max_size=6), places)
+def test_looking_one_move_ahead_finds_the_goal_whenever_a_row_leads_there(
+    drawn: list[tuple[Point, Point]], goal: Point
+) -> None:
+    rows = [row(k, moved, offset) for k, (moved, offset) in enumerate(drawn)]
+    region = goal_at(*goal)
+    there = {
+        k
+        for k, (moved, _) in enumerate(drawn)
+        if max(abs(moved.x - goal.x), abs(moved.y - goal.y)) <= region.half_width - 0.1
+        and np.hypot(*moved) > MOVEMENT_THRESHOLD
+    }
+    chosen = Lookahead(depth=1).choose(standing(rows, region)).position
+    assert not there or chosen in there
+
+
+def test_a_plan_is_told_as_json_and_read_again() -> None:
+    rows = [row(1, RIGHT), row(2, AWAY)]
+    choice = Lookahead().choose(standing(rows, goal_at(5.0, 5.0, 1.0)))
+    assert [Reason.from_json(reason.json()) for reason in choice.reasons] == list(choice.reasons)
+    assert "moves" not in choice.reasons[0].json()
+    assert choice.reasons[-1].json()["moves"]
+
+
+@pytest.mark.parametrize("text", ["lookahead:depth=9", "lookahead:depth=0", "lookahead:beam=401"])
+def test_a_search_that_cannot_be_done_names_its_limit(text: str) -> None:
+    with pytest.raises(BadInputError, match=r"must lie in \[1, (8|400)\]"):
+        registry.component("planners", text)
