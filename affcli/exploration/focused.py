@@ -40,8 +40,9 @@ PARAMS: Mapping[str, Setting] = {
         "How much a try loses with each that began about where it would leave the attractor.",
         *(0.0, 100.0),
     ),
+    "place": Setting(2.0, "in", "Width of the cells of the table in which that counts.", 0.5, 20.0),
 }
-"""Of all focused explorers. The defaults were chosen on seeds 100 to 129."""
+"""Of all focused explorers. The defaults were chosen on seeds 100 to 149."""
 
 
 class Focused:
@@ -52,7 +53,8 @@ class Focused:
         exploratory: the calls to draw from.
         box: where the attractor may stand to the wrist.
         rng: the robot's choices.
-        contact, cell, near, places: as `PARAMS` says.
+        places: how much a try loses with each that began about where it would leave the attractor.
+        remembering: the others of `PARAMS`, which `Memory` takes.
     """
 
     def __init__(
@@ -62,13 +64,11 @@ class Focused:
         box: BabblingSettings,
         rng: np.random.Generator,
         *,
-        contact: float,
-        cell: float,
-        near: float,
         places: float,
+        **remembering: float,
     ) -> None:
         self._interest, self._exploratory, self._box, self._rng = interest, exploratory, box, rng
-        self._memory = Memory(len(exploratory), box, cell, contact, near)
+        self._memory = Memory(len(exploratory), box, **remembering)
         self._dislike = places
         self._places, self._calls = np.empty((0, 2)), np.empty(0, dtype=np.intp)
 

@@ -20,8 +20,6 @@ VERSION = 1
 """Of the state."""
 LOOKS = 3
 """A behavior is tried until it was done whole, at most so often, to know how it moves the wrist."""
-PLACE = 2.0
-"""Width of the cells of the table in which the attractor's places are counted (in)."""
 FARTHEST = 1e6
 """No wrist goes farther (in)."""
 
@@ -35,6 +33,7 @@ class Memory:
         cell: width of a cell of the map of contacts (in).
         contact: the probability of contact in a cell of which nothing is known.
         near: how near rows make each other less new (in).
+        place: width of the cells of the table in which the attractor's places are counted (in).
 
     Attributes:
         contacts: where the attractor can be to the wrist and not be.
@@ -44,12 +43,20 @@ class Memory:
     """
 
     def __init__(
-        self, behaviors: int, box: BabblingSettings, cell: float, contact: float, near: float
+        self,
+        behaviors: int,
+        box: BabblingSettings,
+        *,
+        cell: float,
+        contact: float,
+        near: float,
+        place: float,
     ) -> None:
         self.contacts = ContactMap(box, cell, contact)
         self.rows = RowMap(behaviors, box, cell, near)
         self.travel = np.zeros((behaviors, 2))
         self.looks = np.full(behaviors, LOOKS)
+        self._place = place
         self._places: Counter[tuple[int, int]] = Counter()
 
     def learn(self, call: int, record: BabblingRecord) -> None:
@@ -62,7 +69,7 @@ class Memory:
         done = execution.status is ExecutionStatus.DONE
         self.looks[call] = 0 if done else max(self.looks[call] - 1, 0)
         x, y = record.start.object_position
-        self._places[math.floor(x / PLACE), math.floor(y / PLACE)] += 1
+        self._places[math.floor(x / self._place), math.floor(y / self._place)] += 1
         if record.affordance is None:
             self.contacts.passed(place, travel)
         else:
@@ -71,7 +78,7 @@ class Memory:
 
     def visits(self, places: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return how many behaviors began with the attractor about each place (n, 2) (in)."""
-        cells = np.floor(places / PLACE).astype(int).tolist()
+        cells = np.floor(places / self._place).astype(int).tolist()
         return np.array([self._places[i, j] for i, j in cells], dtype=np.int64)
 
     def state(self) -> dict[str, Any]:
