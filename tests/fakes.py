@@ -21,6 +21,7 @@ from affcli.core.behavior import (
     Execution,
     ExecutionStatus,
 )
+from affcli.core.choice import Reaches
 from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Observation
 from affcli.core.task import GoalRegion
@@ -216,7 +217,7 @@ class FakeExplorer:
     call: BehaviorCall
     heard: list[tuple[str, object]] = field(default_factory=list)
 
-    def places(self, seen: Observation) -> NDArray[np.float64]:
+    def places(self, seen: Observation, reaches: Reaches) -> NDArray[np.float64]:
         self.heard.append(("places", seen.object_position))
         return np.array(self.offsets)
 
@@ -234,4 +235,6 @@ class FakeExplorer:
         return {"heard": len(self.heard)}
 
     def restore(self, state: Mapping[str, Any]) -> None:
+        if state.keys() != {"heard"}:
+            raise ValueError("not what it heard")
         self.heard = [("restored", None)] * int(state["heard"])

@@ -39,7 +39,7 @@ class Line:
         panel: which measure they are of, where there are several.
         name: of the condition, or of what the conditions of the points share; empty for all.
         points: in the order of their x.
-        course: one condition followed over time; else each point is of another condition.
+        course: followed over time; else each point is of a condition that says nothing of others.
     """
 
     panel: str
@@ -90,8 +90,14 @@ def course_line(name: str, courses: Sequence[Course], y: str, x: str) -> Line:
     return Line("", name, tuple(points), course=True)
 
 
-def swept_line(panel: str, name: str, points: Mapping[float, Sequence[float]], most: float) -> Line:
+def swept_line(
+    panel: str,
+    name: str,
+    points: Mapping[float, Sequence[float]],
+    most: float,
+    *,
+    course: bool = False,
+) -> Line:
     """Return a point for each condition, from the values of its robots by where it lies."""
-    return Line(
-        panel, name, tuple(Point.of(x, values, most) for x, values in sorted(points.items()))
-    )
+    found = tuple(Point.of(x, values, most) for x, values in sorted(points.items()))
+    return Line(panel, name, found, course)

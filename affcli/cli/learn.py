@@ -1,5 +1,6 @@
 """``affcli learn``: a robot babbles with a tool for an hour and keeps what it saw (§6)."""
 
+from collections.abc import Sequence
 from typing import Annotated
 
 import typer
@@ -25,6 +26,7 @@ from affcli.cli.options import (
     check_count,
     check_if_given,
     checked_hours,
+    checked_minutes,
     checked_note,
 )
 from affcli.cli.terminal import bars, now, say, show_either
@@ -44,6 +46,15 @@ Hours = Annotated[
         help="Robot hours; 1 if not given.",
         metavar="H",
         callback=check_if_given(checked_hours),
+    ),
+]
+Minutes = Annotated[
+    float | None,
+    typer.Option(
+        "--minutes",
+        help="Instead of hours.",
+        metavar="M",
+        callback=check_if_given(checked_minutes),
     ),
 ]
 Behaviors = Annotated[
@@ -80,6 +91,7 @@ def learn(
     tool: Tools = None,
     all_tools: AllTools = False,
     hours: Hours = None,
+    minutes: Minutes = None,
     behaviors: Behaviors = None,
     seed: Seed = 0,
     repertoire: Repertoire = None,
@@ -101,9 +113,12 @@ def learn(
     --resume alone.
     """
     names = _tools_asked_for(tool, all_tools=all_tools)
-    own = (hours, behaviors, seed, sensor, config, changes, repertoire, binding, explorer, world)
-    _check_together(names, hours, behaviors, resume=resume, own=any((*own, note)))
-    if behaviors is None and hours is None:
+    lengths = (hours, minutes, behaviors)
+    own = (*lengths, seed, sensor, config, changes, repertoire, binding, explorer, world)
+    _check_together(names, lengths, resume=resume, own=any((*own, note)))
+    if minutes is not None:
+        hours = minutes / 60.0
+    elif behaviors is None and hours is None:
         hours = 1.0
 
     settings = with_sensor(load_settings(config, changes or ()), sensor)
@@ -144,7 +159,7 @@ def _tools_asked_for(tool: list[str] | None, *, all_tools: bool) -> list[str]:
 
 
 def _check_together(
-    names: list[str], hours: float | None, behaviors: int | None, *, resume: bool, own: bool
+    names: list[str], lengths: Sequence[float | None], *, resume: bool, own: bool
 ) -> None:
     """Refuse options that do not go together: nothing that is asked for is ignored."""
     if not names and not resume:
@@ -152,8 +167,8 @@ def _check_together(
         raise UsageError(f"which tool? give --tool {known}, or --all-tools")
     if not names and own:
         raise UsageError("--resume alone: an interrupted run has its own hours, seed and settings")
-    if hours is not None and behaviors is not None:
-        raise UsageError("give --hours or --behaviors, not both")
+    if sum(length is not None for length in lengths) > 1:
+        raise UsageError("give one of --hours, --minutes and --behaviors")
 
 
 def _begun(

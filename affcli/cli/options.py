@@ -61,9 +61,20 @@ def checked_seed(text: str) -> int:
 
 def checked_hours(hours: float) -> float:
     """Return the hours; BadInputError when they do not lie in (0, 10000]."""
-    if not (math.isfinite(hours) and 0.0 < hours <= LONGEST_HOURS):
-        raise BadInputError(f"--hours {hours}: must be more than 0 and at most {LONGEST_HOURS:g}")
-    return hours
+    return _checked_time("--hours", hours, 1.0)
+
+
+def checked_minutes(minutes: float) -> float:
+    """Return the minutes; BadInputError when they are not more than 0, or more than 10000 hours."""
+    return _checked_time("--minutes", minutes, 60.0)
+
+
+def _checked_time(option: str, given: float, of_an_hour: float) -> float:
+    """Return a time; BadInputError when it is not that of a run."""
+    if not (math.isfinite(given) and 0.0 < given / of_an_hour <= LONGEST_HOURS):
+        most = of_an_hour * LONGEST_HOURS
+        raise BadInputError(f"{option} {given}: must be more than 0 and at most {most:g}")
+    return given
 
 
 def checked_count(option: str, count: int, most: int) -> int:

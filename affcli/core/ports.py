@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from affcli.core.affordance import Affordance
 from affcli.core.behavior import BehaviorCall, Execution
-from affcli.core.choice import Candidate, Choice, Situation
+from affcli.core.choice import Candidate, Choice, Reaches, Situation
 from affcli.core.geometry import Point, Pose
 from affcli.core.goal import Goal
 from affcli.core.observation import Observation
@@ -129,11 +129,15 @@ class Explorer(Protocol):
     remembers is in its `state`, so that a run can be stopped after any behavior and gone on with.
     """
 
-    def places(self, seen: Observation) -> NDArray[np.float64]:
+    def places(self, seen: Observation, reaches: Reaches) -> NDArray[np.float64]:
         """Return where the attractor may stand to the wrist (n, 2) (in), the first choice first.
 
         Those that the arm cannot take up are passed over. When none can be taken up, the attractor
         is put back by hand, and `places` is asked again.
+
+        Args:
+            seen: the latest observation.
+            reaches: which wrist positions can be taken up.
         """
 
     def refused(self, place: Point) -> None:

@@ -9,10 +9,19 @@ from numpy.typing import NDArray
 
 from affcli.core.babbling_box import BabblingSettings
 from affcli.core.behavior import BehaviorCall
+from affcli.core.choice import Reaches
 from affcli.core.geometry import Point
 from affcli.core.observation import Observation
 from affcli.core.part import Part
 from affcli.core.trial import BabblingRecord
+
+
+def drawn(box: BabblingSettings, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Return uniform draws of where the attractor may stand to the wrist (n, 2) (in)."""
+    places = rng.random((box.draws, 2))
+    places[:, 0] = (2.0 * places[:, 0] - 1.0) * box.offset_x_max
+    places[:, 1] = box.offset_y_min + places[:, 1] * (box.offset_y_max - box.offset_y_min)
+    return places
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,12 +40,9 @@ class RandomBabbling:
     box: BabblingSettings
     rng: np.random.Generator
 
-    def places(self, seen: Observation) -> NDArray[np.float64]:
+    def places(self, seen: Observation, reaches: Reaches) -> NDArray[np.float64]:
         """Return uniform draws from the box."""
-        box, drawn = self.box, self.rng.random((self.box.draws, 2))
-        drawn[:, 0] = (2.0 * drawn[:, 0] - 1.0) * box.offset_x_max
-        drawn[:, 1] = box.offset_y_min + drawn[:, 1] * (box.offset_y_max - box.offset_y_min)
-        return drawn
+        return drawn(self.box, self.rng)
 
     def refused(self, place: Point) -> None:
         """Draw on."""

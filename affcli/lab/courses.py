@@ -11,6 +11,7 @@ from affcli.analysis.curves import INTERVALS, Curve
 from affcli.analysis.paired import all_tried, summed
 from affcli.config import known_settings
 from affcli.core.names import one_of
+from affcli.core.records import LearningRunInfo
 from affcli.errors import UsageError
 from affcli.lab.conditions import Condition, repeated
 from affcli.lab.run_parts import settings_of
@@ -33,7 +34,13 @@ class Curves(NamedTuple):
     y: str
 
 
-def curves_of(store: Store, conditions: Sequence[Condition], y: str, x: str | None) -> Curves:
+def curves_of(
+    store: Store,
+    conditions: Sequence[Condition],
+    y: str,
+    x: str | None,
+    tools: Sequence[str] = (),
+) -> Curves:
     """Return a measure of each condition against something.
 
     Args:
@@ -42,6 +49,7 @@ def curves_of(store: Store, conditions: Sequence[Condition], y: str, x: str | No
         y: a key of `MEASURES`.
         x: a key of `TIME`, or the name of a setting; None for the setting in which the conditions
             differ if it is but one, else minutes.
+        tools: only trials with these are counted; all if empty.
 
     Raises:
         UsageError: there is no such measure or setting, or it is no number, or it is the same in
@@ -51,14 +59,19 @@ def curves_of(store: Store, conditions: Sequence[Condition], y: str, x: str | No
     swept = _swept(conditions)
     x = x or (swept[0] if len(swept) == 1 else "minutes")
     places = _sweeps(conditions, x) if x not in TIME else []
-    courses = [_courses(store, one) for one in conditions] if y != "solved" or not places else []
+    by_end = y == "solved" and x == "minutes"
+    courses = (
+        [] if by_end or (y == "solved" and places) else [_courses(store, one) for one in conditions]
+    )
     if y != "solved" and not places:
         lines = [
             course_line(one.name, list(own.values()), y, x)
             for one, own in zip(conditions, courses, strict=True)
         ]
         return Curves(lines, TIME[x], MEASURES[y])
-    # Only a setting joins conditions: along time each is a mark by itself.
+    if by_end:
+        places = [(_name_beside(one.name, x), _minutes(store, one)) for one in conditions]
+    # How many rows there are nobody chose: along them each condition is a mark by itself.
     places = places or [
         (one.name, math.fsum(getattr(course, x)[-1] for course in own.values()) / len(own))
         for one, own in zip(conditions, courses, strict=True)
@@ -66,7 +79,8 @@ def curves_of(store: Store, conditions: Sequence[Condition], y: str, x: str | No
     sweeps: dict[tuple[str, float, str], dict[float, Sequence[float]]] = defaultdict(dict)
     for number, (condition, (name, place)) in enumerate(zip(conditions, places, strict=True)):
         if y == "solved":
-            cells = store.results.solved_by_cell(condition.session.id, ())
+            every = store.results.solved_by_cell(condition.session.id, ("tool",))
+            cells = {cell: own for cell, own in every.items() if not tools or cell.tool in tools}
             for cell, counts in summed(cells).items():
                 most = max(trials for trials, _ in counts.values())
                 panel = f"{cell.protocol}, of {most}"
@@ -74,7 +88,10 @@ def curves_of(store: Store, conditions: Sequence[Condition], y: str, x: str | No
         else:
             ends = [getattr(one, y)[-1] for one in courses[number].values()]
             sweeps["", 1.0 if y == "share" else math.inf, name][place] = ends
-    lines = [swept_line(panel, name, own, most) for (panel, most, name), own in sweeps.items()]
+    lines = [
+        swept_line(panel, name, own, most, course=by_end and len(own) > 1)
+        for (panel, most, name), own in sweeps.items()
+    ]
     return Curves(lines, TIME.get(x) or _setting_words(x), MEASURES[y])
 
 
@@ -102,8 +119,8 @@ def _sweeps(conditions: Sequence[Condition], x: str) -> list[tuple[str, float]]:
 
 
 def _name_beside(name: str, x: str) -> str:
-    """Return the name of a condition without the value of a swept setting."""
-    said = (f"{x}=", f"{x.rpartition('.')[2]}=")
+    """Return the name of a condition without the value of what is swept."""
+    said = ("minutes=", "hours=") if x == "minutes" else (f"{x}=", f"{x.rpartition('.')[2]}=")
     return ", ".join(word for word in name.split(", ") if not word.startswith(said))
 
 
@@ -138,11 +155,26 @@ def _setting_words(name: str) -> str:
     return f"{name} ({unit})" if unit else name
 
 
-def _courses(store: Store, condition: Condition) -> Mapping[int, Course]:
-    """Return how each robot of a condition learned."""
+def _minutes(store: Store, condition: Condition) -> float:
+    """Return how long the robots of a condition learned with each tool, as they were to (min)."""
+    lengths = [
+        60.0 * run.spec.hours if run.spec.hours is not None else run.robot_seconds / 60.0
+        for run in _begun(store, condition)
+    ]
+    return math.fsum(lengths) / len(lengths)
+
+
+def _begun(store: Store, condition: Condition) -> Sequence[LearningRunInfo]:
+    """Return the learning runs of a condition."""
     runs = store.learning.runs(session_id=condition.session.id)
     if not runs or not all(run.robot_seconds for run in runs):
         raise UsageError(f"{condition.name}: nothing learned; name another session")
+    return runs
+
+
+def _courses(store: Store, condition: Condition) -> Mapping[int, Course]:
+    """Return how each robot of a condition learned."""
+    runs = _begun(store, condition)
     seconds = max(run.robot_seconds for run in runs) / INTERVALS
     did = store.results.learning_intervals(seconds, condition.session.id)
     curves: dict[int, list[Curve]] = defaultdict(list)

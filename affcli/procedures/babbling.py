@@ -118,7 +118,7 @@ def _place(robot: Robot, seen: Observation, explorer: Explorer) -> tuple[Executi
     Returns:
         The position wrist executed, None when all were in vain; and how many were blocked.
     """
-    places = explorer.places(seen)
+    places = explorer.places(seen, robot.reaches)
     x, y = places[:, 0], places[:, 1]
     blocked = 0
     for i in np.flatnonzero(robot.reaches(seen.object_x - x, seen.object_y - y)):

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from affcli.behaviors.moving import DIRECTIONS
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.behavior import GRASP, BehaviorCall, BehaviorName, Execution, ExecutionStatus
@@ -90,21 +91,28 @@ def situations() -> Iterator[Situation]:
 
 
 def record(step: int, place: Point, call: BehaviorCall, seen: Observation) -> BabblingRecord:
-    """Return what is told of a behavior after which the attractor lies farther off, or as before.
+    """Return what is told of a behavior: it pushes the attractor before it in every other step, and
+    meets the edge of the reach half-way in every fifth.
 
     Args:
-        step: of the run; the attractor moves in every other.
+        step: of the run.
         place: where the attractor stood to the wrist (in).
         call: what was tried.
         seen: what was seen before.
     """
     wrist = Pose(*seen.wrist_for(place))
     start = observation(seen.object_position, wrist.point)
-    moved = Point(start.object_x + 1.5 * (step % 2), start.object_y)
-    end = observation(moved, wrist.point)
+    truncated = step % 5 == 0
+    far = call["offset_distance"] * (0.5 if truncated else 1.0)
+    dx, dy = (far * along for along in DIRECTIONS[call.name])
+    after, pushed = Pose(wrist.x + dx, wrist.y + dy), 0.6 * (step % 2)
+    moved = Point(start.object_x + pushed * dx, start.object_y + pushed * dy)
+    end = observation(moved, after.point)
     asked = BehaviorCall.of(POSITION, {"x": place.x, "y": place.y})
-    placing, execution = (
-        Execution(one, ExecutionStatus.DONE, wrist, wrist, 2.0) for one in (asked, call)
-    )
-    row = Affordance(step, BINDING, call, start, end) if change_detected(start, end) else None
+    placing = Execution(asked, ExecutionStatus.DONE, wrist, wrist, 2.0)
+    status = ExecutionStatus.TRUNCATED if truncated else ExecutionStatus.DONE
+    execution = Execution(call, status, wrist, after, 2.0)
+    row = None
+    if change_detected(start, end):
+        row = Affordance(step, BINDING, call, start, end, truncated, travel=Point(dx, dy))
     return BabblingRecord(step, 4.0 * step, 0, 0, placing, execution, start, end, row)

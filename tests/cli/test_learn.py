@@ -108,6 +108,8 @@ def test_an_hour_is_an_hour_of_robot_time(leisurely: Path, empty: Path) -> None:
     assert rows(empty, before_last) == [(sum(int(str(run["behaviors"])) - 1 for run in learned),)]
     one_hour = json_of(*args, "--hours", "1")
     assert [run["new"] for run in one_hour] == [False] * 5
+    sixty_minutes = json_of(*args, "--minutes", "60")
+    assert [run["new"] for run in sixty_minutes] == [False] * 5
 
 
 def one_run(database: Path, behaviors: int) -> None:

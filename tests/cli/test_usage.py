@@ -25,7 +25,11 @@ USAGE = {
     "tool and all tools": (("learn", "--all-tools", "--tool", "stick"), "not both"),
     "hours and behaviors": (
         ("learn", "--tool", "stick", "--hours", "1", "--behaviors", "5"),
-        "give --hours or --behaviors, not both",
+        "give one of --hours, --minutes and --behaviors",
+    ),
+    "hours and minutes": (
+        ("learn", "--tool", "stick", "--hours", "1", "--minutes", "5"),
+        "give one of --hours, --minutes and --behaviors",
     ),
     "hours in words": (("learn", "--tool", "stick", "--hours", "one"), "'--hours'"),
     "behaviors in words": (
@@ -65,6 +69,8 @@ BAD_NUMBERS = {
     "infinite hours": ("learn", "--tool", "stick", "--hours", "inf"),
     "hours minus infinity": ("learn", "--tool", "stick", "--hours", "-inf"),
     "hours past the limit": ("learn", "--tool", "stick", "--hours", "10000.1"),
+    "minutes 0": ("learn", "--tool", "stick", "--minutes", "0"),
+    "minutes past the limit": ("learn", "--tool", "stick", "--minutes", "600000.1"),
     "absurd hours": ("learn", "--tool", "stick", "--hours", "1e308"),
     "behaviors 0": ("learn", "--tool", "stick", "--behaviors", "0"),
     "negative behaviors": ("learn", "--tool", "stick", "--behaviors", "-5"),

@@ -3,9 +3,9 @@
 This file is run as tests by `test_suites.py`, for which every test class names what must fail.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from affcli.config import Settings
 from affcli.core.babbling_box import BabblingSettings
 from affcli.core.behavior import GRASP, BehaviorCall, Execution
-from affcli.core.choice import Choice, Situation
+from affcli.core.choice import Choice, Reaches, Situation
 from affcli.core.geometry import Point
 from affcli.core.goal import Goal
 from affcli.core.observation import Observation
@@ -77,11 +77,45 @@ class ForgetfulExplorer(RandomBabbling):
         super().__init__(examples.CALLS, BabblingSettings(draws=8), rng)
         object.__setattr__(self, "told", [])
 
-    def places(self, seen: Observation) -> NDArray[np.float64]:
-        return super().places(seen) + len(self.told)
+    def places(self, seen: Observation, reaches: Reaches) -> NDArray[np.float64]:
+        return super().places(seen, reaches) + len(self.told)
 
     def tell(self, record: BabblingRecord) -> None:
         self.told.append(record.step)
+
+
+class GossipingExplorer(RandomBabbling):
+    """Goes where any explorer was refused a place: explorers share what they remember."""
+
+    refusals: ClassVar[list[Point]] = []
+
+    def __init__(self, rng: np.random.Generator) -> None:
+        super().__init__(examples.CALLS, BabblingSettings(draws=8), rng)
+
+    def places(self, seen: Observation, reaches: Reaches) -> NDArray[np.float64]:
+        return super().places(seen, reaches) + len(self.refusals)
+
+    def refused(self, place: Point) -> None:
+        self.refusals.append(place)
+
+
+class HoarderExplorer(RandomBabbling):
+    """Writes down every record at length."""
+
+    told: list[str]
+
+    def __init__(self, rng: np.random.Generator) -> None:
+        super().__init__(examples.CALLS, BabblingSettings(draws=8), rng)
+        object.__setattr__(self, "told", [])
+
+    def tell(self, record: BabblingRecord) -> None:
+        self.told.append(repr(record))
+
+    def state(self) -> dict[str, Any]:
+        return {"version": 1, "told": self.told}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        object.__setattr__(self, "told", list(state["told"]))
 
 
 class CornerGoal(GoalRegion):
@@ -179,6 +213,29 @@ class TestForgetfulExplorer(ExplorerContract):
     @pytest.fixture
     def make_explorer(self) -> MakeExplorer:
         return ForgetfulExplorer
+
+
+class TestGossipingExplorer(ExplorerContract):
+    must_fail = frozenset(
+        {
+            "test_the_same_stream_gives_the_same_choices",
+            "test_all_that_it_remembers_is_in_its_state",
+        }
+    )
+
+    @pytest.fixture
+    def make_explorer(self) -> MakeExplorer:
+        return GossipingExplorer
+
+
+class TestHoarderExplorer(ExplorerContract):
+    must_fail = frozenset(
+        {"test_its_state_does_not_outgrow_a_database", "test_a_state_of_another_version_is_refused"}
+    )
+
+    @pytest.fixture
+    def make_explorer(self) -> MakeExplorer:
+        return HoarderExplorer
 
 
 class TestCornerGoal(GoalContract):

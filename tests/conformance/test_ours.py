@@ -56,6 +56,14 @@ class TestRandomBabbling(ExplorerContract):
         return lambda rng: RandomBabbling(examples.CALLS, BabblingSettings(draws=8), rng)
 
 
+class TestFocused(ExplorerContract):
+    @pytest.fixture(params=sorted(registry.parts("explorers").keys() - {"random"}))
+    def make_explorer(self, request: pytest.FixtureRequest) -> MakeExplorer:
+        part = registry.part("explorers", request.param)
+        usual = {name: one.default for name, one in part.params.items()}
+        return lambda rng: part.build(examples.CALLS, BabblingSettings(draws=8), rng, **usual)
+
+
 class TestGoalRegion(GoalContract):
     @pytest.fixture(params=[0.5, 2.25, 9.0])
     def goal(self, request: pytest.FixtureRequest) -> Goal:

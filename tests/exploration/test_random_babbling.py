@@ -14,6 +14,7 @@ from affcli.core.babbling_box import BabblingSettings
 from affcli.core.behavior import BehaviorCall
 from affcli.core.geometry import Point
 from affcli.exploration.random_babbling import RandomBabbling
+from affcli.testing.examples import anywhere
 from tests.factories import observation
 
 CALLS = tuple(behavior.call for behavior in paper_repertoire())
@@ -30,7 +31,7 @@ def calls(seed: int, number: int) -> list[BehaviorCall]:
     babbling = explorer(seed)
     drawn = []
     for _ in range(number):
-        place = Point(*babbling.places(SEEN)[0].tolist())
+        place = Point(*babbling.places(SEEN, anywhere)[0].tolist())
         drawn.append(babbling.behavior(place, SEEN))
     return drawn
 
@@ -41,7 +42,7 @@ def test_offsets_are_drawn_from_one_box_whatever_the_tool(
 ) -> None:
     """§4, Fig. 4: the shape of the tool "is not required and used": one box serves all."""
     box = replace(BOX, offset_x_max=width, offset_y_min=low, offset_y_max=low + height)
-    places = explorer(seed, box).places(SEEN)
+    places = explorer(seed, box).places(SEEN, anywhere)
     assert places.shape == (box.draws, 2)
     assert (np.abs(places[:, 0]) <= width).all()
     assert (places[:, 1] >= low).all()
@@ -52,7 +53,7 @@ def test_offsets_fill_the_box_evenly() -> None:
     """Kolmogorov-Smirnov: the largest gap between the distribution drawn and a uniform one is of
     the order 1 / sqrt(n); 2.5 / sqrt(n) is exceeded in one of 100,000 honest runs."""
     n = 2048
-    x, y = explorer(7, replace(BOX, draws=n)).places(SEEN).T
+    x, y = explorer(7, replace(BOX, draws=n)).places(SEEN, anywhere).T
     x = (x / BOX.offset_x_max + 1.0) / 2.0
     y = (y - BOX.offset_y_min) / (BOX.offset_y_max - BOX.offset_y_min)
     for shares in (np.sort(x), np.sort(y)):

@@ -12,6 +12,7 @@ from affcli import registry
 from affcli.config import Settings
 from affcli.core.babbling_box import BabblingSettings
 from affcli.core.behavior import BehaviorCall
+from affcli.core.choice import Reaches
 from affcli.core.geometry import Point
 from affcli.core.observation import Observation, SensorKind
 from affcli.core.part import Kind, Part
@@ -50,7 +51,7 @@ class Curious:
     near: Point | None = None
     refusals: int = 0
 
-    def places(self, seen: Observation) -> NDArray[np.float64]:
+    def places(self, seen: Observation, reaches: Reaches) -> NDArray[np.float64]:
         low = np.array([-self.box.offset_x_max, self.box.offset_y_min])
         high = np.array([self.box.offset_x_max, self.box.offset_y_max])
         anywhere: NDArray[np.float64] = self.rng.uniform(low, high, (self.box.draws, 2))

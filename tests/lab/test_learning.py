@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from affcli import registry
 from affcli.config import Settings, settings_with
 from affcli.core.change_detection import change_detected
 from affcli.core.identity import Component
@@ -57,6 +58,22 @@ def test_a_run_stopped_anywhere_goes_on_as_if_it_had_not_been_stopped(
     again = gone_on_with(run)
     assert again.done is (stop == SHORT)
     assert before + tuple(again.steps()) == learned(spec)
+
+
+@pytest.mark.parametrize("explorer", sorted(registry.parts("explorers").keys() - {"random"}))
+@pytest.mark.parametrize("stop", [1, 13])
+def test_a_run_of_an_explorer_that_learns_goes_on_to_the_same_rows(
+    explorer: str, stop: int
+) -> None:
+    """Another process has the checkpoint, and nothing else of what the explorer remembered."""
+    spec = RunParts.chosen(SETTINGS, explorer=explorer).spec("t-hook", 3, 0, None, SHORT)
+    run = LearningRun(spec)
+    before = tuple(islice(run.steps(), stop))
+    again = gone_on_with(run)
+    after = tuple(again.steps())
+    assert after == tuple(run.steps())
+    assert before + after == tuple(LearningRun(spec).steps())
+    assert again.checkpoint() == run.checkpoint()
 
 
 @settings(max_examples=15)

@@ -18,6 +18,8 @@ BAND = 0.2
 """How dense a band is, from 0 to 1."""
 MARKS = ("o", "s", "^", "D", "v", "P")
 """Of conditions that are told apart."""
+MOST_MARKS = 12
+"""On a line that is followed over time."""
 LOGARITHMIC = 8.0
 """A swept setting whose largest value is so many times its smallest has a logarithmic axis."""
 
@@ -56,9 +58,16 @@ def _look(line: Line, names: Sequence[str]) -> dict[str, Any]:
     number = names.index(line.name)
     color = COLORS[number % len(COLORS)]
     if line.course:
-        return {"color": color, "linestyle": DASHES[number % len(DASHES)], "linewidth": 1.1}
+        look = {"color": color, "linestyle": DASHES[number % len(DASHES)], "linewidth": 1.1}
+        mark = {"marker": MARKS[number % len(MARKS)], "markersize": 3.5} if _is_marked(line) else {}
+        return look | mark
     joined = {"linewidth": 0.8, "linestyle": "-" if len(line.points) > 1 else "none"}
     return {"color": color, "marker": MARKS[number % len(MARKS)], "markersize": 3.5, **joined}
+
+
+def _is_marked(line: Line) -> bool:
+    """Tell whether the points of a line are so few that each of them has a mark."""
+    return not line.course or len(line.points) <= MOST_MARKS
 
 
 def _draw_course(axes: Axes, line: Line, look: Mapping[str, Any]) -> None:
@@ -80,9 +89,10 @@ def _draw_sweep(axes: Axes, line: Line, look: Mapping[str, Any]) -> None:
 
 
 def _scale(axes: Axes, lines: Sequence[Line]) -> None:
-    """Begin time at 0; mark the values of a sweep."""
+    """Begin time at 0, and what is followed over it; tick where lines have marks."""
     if any(line.course for line in lines):
         axes.set_ylim(bottom=0.0)
+    if not all(map(_is_marked, lines)):
         axes.set_xlim(left=0.0)
     elif any(len(line.points) > 1 or not line.name for line in lines):
         xs = sorted({point.x for line in lines for point in line.points})
