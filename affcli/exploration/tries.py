@@ -64,7 +64,8 @@ class Tries:
         gone_x, gone_y = share * travel[:, :1], share * travel[:, 1:]
         wrist_x = (seen.object_x - x)[:, None] + gone_x
         wrist_y = (seen.object_y - y)[:, None] + gone_y
-        held = reaches(wrist_x.ravel(), wrist_y.ravel()).reshape(share.shape)
+        x_on, y_on = wrist_x.ravel(), wrist_y.ravel()
+        held = reaches(x_on, y_on, np.zeros(len(x_on))).reshape(share.shape)
         held = np.logical_and.accumulate(held, axis=1)
         on = np.zeros_like(held)
         on[:, :-1] = held[:, 1:] & (distance[1:] <= length[:, None] + 1e-9)

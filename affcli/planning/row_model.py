@@ -55,6 +55,7 @@ class RowModel:
 
     Args:
         offset_x, offset_y: the attractor as seen from the wrist at the start (n,) (in).
+        angle: the wrist's at the start (n,) (rad).
         movement_x, movement_y: expected movement (n,) (in).
         travel_x, travel_y: how far the wrist goes (n,) (in).
         kind: rows of the same behavior and parameter, held the same, have the same number (n,).
@@ -65,6 +66,7 @@ class RowModel:
 
     offset_x: Floats
     offset_y: Floats
+    angle: Floats
     movement_x: Floats
     movement_y: Floats
     travel_x: Floats
@@ -89,6 +91,7 @@ class RowModel:
         return cls(
             offset_x=table.offset_x,
             offset_y=table.offset_y,
+            angle=table.wrist_angle,
             movement_x=table.movement_x,
             movement_y=table.movement_y,
             travel_x=travel_x,
@@ -126,7 +129,8 @@ class RowModel:
         """
         wrist_x = (x[:, None] - self.offset_x[rows]).ravel()
         wrist_y = (y[:, None] - self.offset_y[rows]).ravel()
-        usable = np.flatnonzero(reaches(wrist_x, wrist_y))
+        angle = np.tile(self.angle[rows], len(x))
+        usable = np.flatnonzero(reaches(wrist_x, wrist_y, angle))
         place, column = np.divmod(usable, max(len(rows), 1))
         row, x_from, y_from = rows[column], wrist_x[usable], wrist_y[usable]
         gone = self._share_gone(row, x_from, y_from, reaches)
@@ -137,7 +141,9 @@ class RowModel:
         cut = np.flatnonzero(self.truncated[row])
         on = 1.0 + BEYOND / np.maximum(travel[cut], BEYOND)
         further[cut] = reaches(
-            x_from[cut] + on * self.travel_x[row[cut]], y_from[cut] + on * self.travel_y[row[cut]]
+            x_from[cut] + on * self.travel_x[row[cut]],
+            y_from[cut] + on * self.travel_y[row[cut]],
+            self.angle[row[cut]],
         )
         moved = np.flatnonzero(length > MOVEMENT_THRESHOLD)
         place, row, scale = place[moved], row[moved], length[moved] / whole[moved]
@@ -158,13 +164,13 @@ class RowModel:
         """
         dx, dy = self.travel_x[row], self.travel_y[row]
         gone = np.ones(len(row))
-        cut = np.flatnonzero(~reaches(x + dx, y + dy))
-        x, y, dx, dy = x[cut], y[cut], dx[cut], dy[cut]
+        cut = np.flatnonzero(~reaches(x + dx, y + dy, self.angle[row]))
+        x, y, dx, dy, angle = x[cut], y[cut], dx[cut], dy[cut], self.angle[row[cut]]
         share, step = np.zeros(len(cut)), 1.0
         for _ in range(HALVINGS):
             step *= 0.5
             further = share + step
-            held = reaches(x + further * dx, y + further * dy)
+            held = reaches(x + further * dx, y + further * dy, angle)
             share[held] = further[held]
         # The edge lies somewhere in the last half: most likely in its middle.
         gone[cut] = share + 0.5 * step

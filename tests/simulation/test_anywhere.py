@@ -26,7 +26,7 @@ TASKS = anywhere(WORKSPACE, 0.5, 60, 7)
 def touched(tool: Tool, place: Point) -> bool:
     """Tell whether the experimenter would say that a tool reaches the attractor at a place."""
     table = Table(WORKSPACE, SETTINGS.physics)
-    experimenter = SimulatedExperimenter(table, None)  # type: ignore[arg-type]  # nothing is drawn
+    experimenter = SimulatedExperimenter(table, None, ())  # type: ignore[arg-type]  # nothing is drawn
     experimenter.lay_out_trial(tool, place, TASKS[0].goal)
     return not experimenter.attractor_out_of_reach()
 
