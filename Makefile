@@ -61,11 +61,11 @@ picked = said=`COLUMNS=80 $(AFFCLI) $(1) --db demo.db 2>&1` || { printf '%s\n' "
 
 ## quick         the tests of what robots do and of what is said of it, in a minute; no processes
 quick: $(INSTALLED_DEV)
-	$(VENV)/bin/pytest --numprocesses auto --dist loadfile $(QUICK)
+	$(VENV)/bin/pytest --numprocesses auto --dist worksteal $(QUICK)
 
 ## test          run the tests
 test: $(INSTALLED_DEV)
-	$(VENV)/bin/pytest --numprocesses auto --dist loadfile
+	$(VENV)/bin/pytest --numprocesses auto --dist worksteal
 
 ## test-browser  test the page in a real browser; installs what it needs
 test-browser: $(INSTALLED_BROWSER)
@@ -81,7 +81,7 @@ test-browser: $(INSTALLED_BROWSER)
 
 ## torture       the long tests whole: a hundred kills, readers for a minute, random attacks, fuzzing, new examples
 torture: $(INSTALLED_DEV)
-	$(VENV)/bin/pytest -m "torture or hypothesis" --torture --numprocesses auto --dist loadfile
+	$(VENV)/bin/pytest -m "torture or hypothesis" --torture --numprocesses auto --dist worksteal
 
 ## mutants       change the code in small ways, and see whether the tests find it [MUTANTS=400 SEED=1000]
 mutants: $(INSTALLED_MUTANTS)

@@ -103,21 +103,18 @@ def test_a_component_is_the_same_after_its_text_and_leaves_defaults_out(
 
 
 @every_param
-@pytest.mark.parametrize("wrong", ["below", "above", "nan", "wide"])
-def test_a_value_out_of_its_limits_is_refused_in_one_line(
-    part: Part, name: str, wrong: str
-) -> None:
+def test_a_value_out_of_its_limits_is_refused_in_one_line(part: Part, name: str) -> None:
     param = part.params[name]
-    value = {"below": param.low - 1.0, "above": param.high * 2.0 + 1.0}.get(wrong, wrong)
-    with pytest.raises(BadInputError) as told:
-        registry.component(part.kind, f"{part.name}:{name}={value}")
-    message = str(told.value)
-    assert told.value.exit_code == 4
-    assert "\n" not in message
-    assert part.name in message
-    assert name in message
-    assert f"[{param.low:g}, {param.high:g}]" in message
-    assert param.unit in message
+    for value in (param.low - 1.0, param.high * 2.0 + 1.0, "nan", "wide"):
+        with pytest.raises(BadInputError) as told:
+            registry.component(part.kind, f"{part.name}:{name}={value}")
+        message = str(told.value)
+        assert told.value.exit_code == 4
+        assert "\n" not in message
+        assert part.name in message
+        assert name in message
+        assert f"[{param.low:g}, {param.high:g}]" in message
+        assert param.unit in message
 
 
 @every_part
@@ -294,13 +291,16 @@ def done(
     return made
 
 
-@pytest.mark.parametrize("angle", [0.0, 0.6])
 @pytest.mark.parametrize("binding", BINDINGS)
 @pytest.mark.parametrize("tool", registry.parts("tools"))
 def test_each_behavior_with_each_tool_ends_in_a_status_and_gives_the_same_again(
-    tool: str, binding: str, angle: float
+    tool: str, binding: str
 ) -> None:
-    """To the bit: in a world of its own, in one used before, and filmed."""
+    """To the bit: in a world of its own, in one used before, and filmed.
+
+    Each tool and each way to hold it with the wrist straight and turned.
+    """
+    angle = 0.6 * ((list(registry.parts("tools")).index(tool) + BINDINGS.index(binding)) % 2)
     spec = specs(tool, binding)
     world, other = (registry.world(spec.world, SETTINGS) for _ in range(2))
     first = done(world, spec, angle)

@@ -7,7 +7,8 @@ from contextlib import closing
 from pathlib import Path
 
 from tests.attack.attacks import Attack
-from tests.fuzz.running import Finished, check_ending
+from tests.cli.forked import Finished
+from tests.fuzz.running import check_ending
 
 SAVED = (
     (re.compile(r"trials? (\d+)(?: to (\d+))? saved"), "SELECT id FROM trial"),

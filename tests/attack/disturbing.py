@@ -9,7 +9,7 @@ from pathlib import Path
 from threading import Event, Thread, Timer
 
 from tests.attack.attacks import SIGNALS, SYSTEM_CALLS, Attack
-from tests.attack.held import Disturbance, nothing
+from tests.cli.forked import Disturbance, nothing
 
 WRITTEN_ON = ("", "-journal", "-wal")
 

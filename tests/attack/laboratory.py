@@ -32,8 +32,8 @@ from tests.attack.checks import (
     contents,
 )
 from tests.attack.disturbing import disturbance
-from tests.attack.held import Held
-from tests.fuzz.running import Finished, check_ending
+from tests.cli.forked import Finished, Forked
+from tests.fuzz.running import check_ending
 
 OLD_DATABASES = Path(__file__).parents[1] / "store" / "databases"
 LIVING, OLDER = "living.db", "older.db"
@@ -62,8 +62,8 @@ class Laboratory:
     """
 
     home: Path
-    program: Held
-    neighbour: Held
+    program: Forked
+    neighbour: Forked
     did: Counter[tuple[str, str, str]] = field(default_factory=Counter)
 
     def besiege(self, seed: int, count: int) -> None:
@@ -144,7 +144,9 @@ class Laboratory:
         if attack.fault == "neighbour":
             ended = self._beside_a_neighbour(args)
         else:
-            ended = self.program.run(args, self.home, disturbance(attack, database, notes), bounds)
+            ended = self.program.run(
+                args, self.home, disturbed=disturbance(attack, database, notes), bounds=bounds
+            )
         self.did[attack.command, attack.fault, how(ended, notes)] += 1
         return ended
 

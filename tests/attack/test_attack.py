@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from tests.attack.held import Held
 from tests.attack.laboratory import Laboratory
+from tests.cli.forked import Forked
 from tests.fuzz.budget import FIRST_SEED
 from tests.fuzz.places import furnish
 
@@ -25,7 +25,7 @@ FEW = 4
 def laboratory(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Laboratory]:
     home = tmp_path_factory.mktemp("attacked")
     furnish(home)
-    attacked = Laboratory(home, Held(), Held())
+    attacked = Laboratory(home, Forked(), Forked())
     yield attacked
     attacked.program.close()
     attacked.neighbour.close()

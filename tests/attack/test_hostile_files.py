@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 from affcli.bounded import LARGEST_FILE, LARGEST_VALUE
-from tests.attack.held import Held
+from tests.cli.forked import Forked
 from tests.cli.program import done, refused
 from tests.fuzz.running import check_ending
 
@@ -145,8 +145,8 @@ READERS = (
 
 
 @pytest.fixture(scope="module")
-def program() -> Iterator[Held]:
-    held = Held()
+def program() -> Iterator[Forked]:
+    held = Forked()
     yield held
     held.close()
 
@@ -161,7 +161,7 @@ def known(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def suffered(program: Held, folder: Path, *args: str) -> float:
+def suffered(program: Forked, folder: Path, *args: str) -> float:
     """Run a command in little memory; return the processor time that it took (s)."""
     ended = program.run(args, folder, bounds={"memory": MEMORY})
     check_ending(" ".join(args[:2]), ended)
@@ -172,7 +172,7 @@ def suffered(program: Held, folder: Path, *args: str) -> float:
 
 @pytest.mark.fault(42)
 def test_every_small_text_is_read_or_refused_in_little_memory(
-    program: Held, known: Path, tell: Callable[[str], None]
+    program: Forked, known: Path, tell: Callable[[str], None]
 ) -> None:
     took = {}
     locate = ("camera", "locate", "view.png", "--calibration")
@@ -192,7 +192,7 @@ def test_every_small_text_is_read_or_refused_in_little_memory(
 @pytest.mark.fault(42)
 @pytest.mark.torture
 def test_every_small_picture_is_read_or_refused_in_little_memory(
-    program: Held, known: Path, torture: bool, tell: Callable[[str], None]
+    program: Forked, known: Path, torture: bool, tell: Callable[[str], None]
 ) -> None:
     took = {}
     for name, made in PICTURES.items():
@@ -208,7 +208,7 @@ def test_every_small_picture_is_read_or_refused_in_little_memory(
 @pytest.mark.fault(42)
 @pytest.mark.torture
 def test_every_small_database_is_read_or_refused_in_little_memory(
-    program: Held, known: Path, torture: bool, tell: Callable[[str], None]
+    program: Forked, known: Path, torture: bool, tell: Callable[[str], None]
 ) -> None:
     took = {}
     database = known / "odd.db"

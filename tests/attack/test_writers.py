@@ -13,7 +13,7 @@ import pytest
 from affcli.lab.replaying import replay_trial
 from affcli.store import open_store
 from tests.attack.checks import check_said, check_sound
-from tests.attack.held import Held
+from tests.cli.forked import Forked
 from tests.cli.program import done
 
 WRITERS = 4
@@ -40,7 +40,7 @@ def trials_in(database: Path) -> int:
         return int(driver.execute(query).fetchone()[0])
 
 
-def write(program: Held, home: Path, seed: int, wanted: int) -> tuple[int, float]:
+def write(program: Forked, home: Path, seed: int, wanted: int) -> tuple[int, float]:
     """Run commands until there are so many trials; return how many, and how long one took."""
     chance = np.random.default_rng(seed)
     commands, longest = 0, 0.0
@@ -63,7 +63,7 @@ def test_four_who_use_one_table_take_turns_and_every_trial_can_be_replayed(
     learn = ("learn", "--tool", "t-hook", "--behaviors", "500", "--config", "few.toml")
     done(*learn, "--db", DATABASE, cwd=tmp_path)
     with ExitStack() as stack, ThreadPoolExecutor(WRITERS) as together:
-        programs = [Held() for _ in range(WRITERS)]
+        programs = [Forked() for _ in range(WRITERS)]
         for program in programs:
             stack.callback(program.close)
         did = [

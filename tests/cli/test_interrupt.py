@@ -31,6 +31,8 @@ from tests.factories import learning_spec
 from tests.lab.quick import NOW
 
 LONG = ("learn", "--tool", "stick", "--behaviors", "7000")
+SHORTER = ("learn", "--tool", "stick", "--behaviors", "2500")
+"""Long enough to be stopped once."""
 GOES_ON = (
     "affcli: stopped; what was saved is kept, and the same command goes on from there "
     "(or: --resume)\n"
@@ -104,7 +106,7 @@ def test_resume_alone_goes_on_with_every_interrupted_run(tmp_path: Path) -> None
     database, alone = tmp_path / "my.db", tmp_path / "alone.db"
     config = tmp_path / "quick.toml"
     config.write_text("[sensor]\nposition_noise = 0.02\n")
-    runs = (LONG, (*LONG, "--seed", "5", "--config", config))
+    runs = (SHORTER, (*SHORTER, "--seed", "5", "--config", config))
     for number, command in enumerate(runs, 1):
         with started(*command, "--db", database) as process:
             wait_until(more_than(number - 1, partial(begun, database)), process)
@@ -276,10 +278,13 @@ def test_workers_end_with_their_parent(signum: signal.Signals, tmp_path: Path) -
     """Lives of full length take seconds; nobody waits for those begun."""
     database = tmp_path / "my.db"
     with started("reproduce", "--robots", "9", "--workers", "2", "--db", database) as process:
-        wait_until(more_than(0, partial(robots, database)), process)
+        wait_until(lambda: len(children_of(process.pid, WORKER)) == 2, process)
+        time.sleep(1.0)
         assert stopped(process, signum) == Ended(128 + signum, "", GOES_ON)
 
 
+WORKER = "affcli.lab.workers"
+"""A process that lives lives has this in its command line."""
 SEVERAL = ("learn", "--tool", "stick", "--tool", "l-stick", "--tool", "t-stick", "--behaviors")
 
 
@@ -289,7 +294,7 @@ def test_several_tools_give_the_same_store_for_any_number_of_workers(tmp_path: P
     for workers in ("1", "2", "9"):
         database = tmp_path / f"{workers}.db"
         done("learn", "--tool", "l-stick", "--behaviors", "20", "--db", database)
-        ended = done(*SEVERAL, "700", "--workers", workers, "--db", database)
+        ended = done(*SEVERAL, "600", "--workers", workers, "--db", database)
         assert [line.split(" (")[0] for line in ended.err.splitlines()] == [
             *("learned stick", "learned l-stick", "learned t-stick")
         ]
@@ -302,7 +307,7 @@ def test_several_tools_give_the_same_store_for_any_number_of_workers(tmp_path: P
 def test_several_tools_that_were_interrupted_go_on(tmp_path: Path) -> None:
     """Stopped, then the program killed, then a worker killed: all that was saved is kept."""
     database, alone = tmp_path / "my.db", tmp_path / "alone.db"
-    command = (*SEVERAL, "2500", "--workers", "2", "--db", database)
+    command = (*SEVERAL, "2000", "--workers", "2", "--db", database)
     with started(*command) as process:
         wait_until(more_than(0, partial(saved, database)), process)
         assert stopped(process, signal.SIGINT) == Ended(130, "", GOES_ON)
@@ -320,7 +325,7 @@ def test_several_tools_that_were_interrupted_go_on(tmp_path: Path) -> None:
     assert ended.code == 0
     assert "a worker process died" in ended.err
     done(*command)
-    done(*SEVERAL, "2500", "--db", alone)
+    done(*SEVERAL, "2000", "--db", alone)
     assert by_key(database) == by_key(alone)
 
 
@@ -347,14 +352,16 @@ def children_of(pid: int, doing: str = "") -> list[int]:
 
 def test_a_worker_that_died_is_named_and_replaced(tmp_path: Path) -> None:
     """As the system kills one when memory runs out."""
-    database = tmp_path / "my.db"
-    with started("reproduce", "--robots", "9", "--workers", "2", "--db", database) as process:
+    database, config = tmp_path / "my.db", tmp_path / "slow.toml"
+    config.write_text("[motion]\nhold = 5.0\n[trial]\nmax_steps = 6\n")
+    command = ("reproduce", "--robots", "6", "--workers", "2", "--config", config)
+    with started(*command, "--db", database) as process:
         wait_until(more_than(0, partial(robots, database)), process)
-        os.kill(children_of(process.pid, "affcli.lab.workers")[0], signal.SIGKILL)
+        os.kill(children_of(process.pid, WORKER)[0], signal.SIGKILL)
         ended = ending(process)
     assert ended.code == 0
     assert "a worker process died" in ended.err
-    assert robots(database) == 9
+    assert robots(database) == 6
 
 
 @pytest.mark.fault(3)

@@ -8,16 +8,20 @@ from typing import Any
 import pytest
 from hypothesis import strategies as st
 
+from tests.cli.forked import Forked
 from tests.fuzz.budget import fuzz
 from tests.fuzz.places import furnish
-from tests.fuzz.running import Program
 
 Fuzz = Callable[..., None]
+SECONDS = 30.0
+"""After these a command is asked to stop."""
+MEMORY = 4 * 2**30
+"""Bytes that a command may take beyond what the program has when it is idle."""
 
 
 @pytest.fixture(scope="session")
-def program() -> Iterator[Program]:
-    running = Program()
+def program() -> Iterator[Forked]:
+    running = Forked(SECONDS, memory=MEMORY)
     yield running
     running.close()
 

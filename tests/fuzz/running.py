@@ -1,89 +1,19 @@
-"""A case: one command in a folder of its own; and what must hold of it, whatever it was."""
+"""What must hold of a command that ended, whatever it was."""
 
 import json
 import os
-import select
-import shutil
 import signal
 import sqlite3
-import subprocess
-import sys
-import tempfile
-from collections.abc import Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
 from pathlib import Path
 
-from tests.cli.program import ROOT, environment
-from tests.fuzz.server import TO_STOP
+from tests.cli.forked import Finished
 
-SECONDS = 30.0
-"""After these a command is asked to stop; nearly all take a few milliseconds."""
 LONGEST_LINE = 1100
 SPEAKING_FIRST = ("learn", "reproduce", "db upgrade")
 """What these say of finished work may stand before the line of a refusal."""
 REPORTING = ("db check", "doctor", "camera calibrate", "camera locate")
 """These tell what is wrong on stdout."""
-
-
-@dataclass(frozen=True, slots=True)
-class Finished:
-    """A command that ended: exit code, output; `stopped` when it had to be asked to."""
-
-    code: int
-    out: bytes
-    err: str
-    stopped: bool
-
-
-class Program:
-    """The program, imported and waiting to be forked (see ``server.py``)."""
-
-    def __init__(self) -> None:
-        self.folder = Path(tempfile.mkdtemp(prefix="affcli-fuzz-"))
-        self._process: subprocess.Popen[bytes] | None = None
-
-    def run(self, args: Sequence[str], cwd: Path, env: Mapping[str, str]) -> Finished:
-        """Run a command to its end."""
-        if self._process is None:
-            self._process = self._started()
-        process = self._process
-        out, err = (str(self.folder / name) for name in ("out", "err"))
-        where = {"cwd": str(cwd), "env": environment(**env), "out": out, "err": err}
-        request = {"args": list(args), "seconds": SECONDS, **where}
-        assert process.stdin is not None
-        assert process.stdout is not None
-        process.stdin.write(json.dumps(request).encode() + b"\n")
-        process.stdin.flush()
-        ready, _, _ = select.select([process.stdout], [], [], SECONDS + 3.0 * TO_STOP)
-        if not ready:
-            self.stop()
-        assert ready, f"{args} hangs"
-        code, stopped = json.loads(process.stdout.readline())
-        told = Path(err).read_bytes().decode()
-        return Finished(code, Path(out).read_bytes(), told, stopped)
-
-    def stop(self) -> None:
-        """End it, and a command that hangs with it."""
-        if self._process is not None:
-            os.killpg(self._process.pid, signal.SIGKILL)
-            self._process.communicate()
-            self._process = None
-
-    def close(self) -> None:
-        """End it and leave nothing behind."""
-        self.stop()
-        shutil.rmtree(self.folder)
-
-    def _started(self) -> subprocess.Popen[bytes]:
-        return subprocess.Popen(
-            [sys.executable, "-m", "tests.fuzz.server"],
-            cwd=ROOT,
-            env=environment(OPENBLAS_NUM_THREADS="1"),
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            start_new_session=True,
-        )
 
 
 def check_ending(name: str, ended: Finished) -> None:

@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 from hypothesis import strategies as st
 
+from tests.cli.forked import Forked
 from tests.fuzz.commands import CommandLine, command_lines
 from tests.fuzz.conftest import Fuzz
-from tests.fuzz.running import Program, check_ending, check_json, files_in, is_sound
+from tests.fuzz.running import check_ending, check_json, files_in, is_sound
 
 DATABASES = ("filled.db", "empty.db")
 WRITING = ("learn", "solve", "break-tool", "reproduce", "db upgrade", "runs note", "runs delete")
@@ -45,7 +46,7 @@ def came_of(made: str, named: list[str]) -> bool:
 @pytest.mark.fault(21)
 @pytest.mark.fault(22)
 def test_every_command_line_is_done_or_refused_and_harms_nothing(
-    program: Program, place: Callable[[], Path], fuzzing: Fuzz
+    program: Forked, place: Callable[[], Path], fuzzing: Fuzz
 ) -> None:
     def check(line: CommandLine) -> None:
         home = place()
@@ -53,7 +54,7 @@ def test_every_command_line_is_done_or_refused_and_harms_nothing(
         before = {name: (home / name).read_bytes() for name in DATABASES}
         there = files_in(outside)
         env = {"TMPDIR": str(outside / "temporary"), **dict(line.env)}
-        ended = program.run([*line.command.words, *line.args], home, env)
+        ended = program.run([*line.command.words, *line.args], home, env=env)
         check_ending(line.command.name, ended)
         named = named_places(line, home)
         for made in files_in(outside) - there:
@@ -101,14 +102,14 @@ queries = st.one_of(
 @pytest.mark.fault(30)
 @pytest.mark.fault(22)
 def test_every_query_is_answered_or_refused_and_changes_nothing(
-    program: Program, place: Callable[[], Path], fuzzing: Fuzz
+    program: Forked, place: Callable[[], Path], fuzzing: Fuzz
 ) -> None:
     home = place()
     before, there = (home / "filled.db").read_bytes(), files_in(home.parents[1])
 
     def check(case: tuple[str, str]) -> None:
         query, form = case
-        ended = program.run(["sql", f"--{form}", "--db", "filled.db", "--", query], home, {})
+        ended = program.run(["sql", f"--{form}", "--db", "filled.db", "--", query], home)
         check_ending("sql", ended)
         assert not ended.stopped, query
         if ended.code == 0 and form == "json":

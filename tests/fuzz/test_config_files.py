@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from affcli.config import Settings
 from affcli.core.observation import SENSOR_KINDS
+from tests.cli.forked import Forked
 from tests.fuzz.conftest import Fuzz
-from tests.fuzz.running import Program, check_ending, is_sound
+from tests.fuzz.running import check_ending, is_sound
 
 DEFAULTS: dict[str, dict[str, Any]] = {}
 for _name, _value in Settings().values().items():
@@ -128,7 +129,7 @@ AFTER: tuple[tuple[str, ...], ...] = (
 @pytest.mark.torture
 @pytest.mark.fault(23)
 def test_every_file_of_settings_is_worked_with_or_refused(
-    program: Program, tmp_path: Path, fuzzing: Fuzz
+    program: Forked, tmp_path: Path, fuzzing: Fuzz
 ) -> None:
     config, database = tmp_path / "odd.toml", tmp_path / "odd.db"
 
@@ -136,14 +137,14 @@ def test_every_file_of_settings_is_worked_with_or_refused(
         text, first, then = case
         config.write_bytes(text)
         database.unlink(missing_ok=True)
-        ended = program.run([*first, "--config", "odd.toml", *place(first)], tmp_path, {})
+        ended = program.run([*first, "--config", "odd.toml", *place(first)], tmp_path)
         check_ending(" ".join(first[:2]), ended)
         assert ended.code in {0, 2, 4}, ended
         if ended.code and not ended.stopped:
             places = ("odd.toml", "counts for nothing", *DEFAULTS)
             assert any(place in ended.err for place in places), ended
         if ended.code == 0 and first[0] == "learn":
-            after = program.run([*then, *place(then)], tmp_path, {})
+            after = program.run([*then, *place(then)], tmp_path)
             check_ending(" ".join(then[:2]), after)
         assert not database.exists() or is_sound(database)
 
@@ -165,7 +166,7 @@ CALIBRATION_VALUES = st.sampled_from(
 @pytest.mark.torture
 @pytest.mark.fault(23)
 def test_every_file_of_the_camera_is_worked_with_or_refused(
-    program: Program, place: Callable[[], Path], fuzzing: Fuzz
+    program: Forked, place: Callable[[], Path], fuzzing: Fuzz
 ) -> None:
     home = place()
     calibration = json.loads((home / "calibration.json").read_text())
@@ -190,7 +191,7 @@ def test_every_file_of_the_camera_is_worked_with_or_refused(
             args = ("camera", "calibrate", "odd.png")
             if name == "view.png":
                 args = ("camera", "locate", "odd.png", "--calibration", "odd.json")
-        ended = program.run(args, home, {})
+        ended = program.run(args, home)
         check_ending(" ".join(args[:2]), ended)
         assert ended.code in {0, 2, 4}, ended
 

@@ -11,9 +11,10 @@ from typing import Any
 import pytest
 from hypothesis import strategies as st
 
+from tests.cli.forked import Forked
 from tests.fuzz.commands import CommandLine, command_lines, every_command
 from tests.fuzz.conftest import Fuzz
-from tests.fuzz.running import Program, check_ending, check_json
+from tests.fuzz.running import check_ending, check_json
 from tests.fuzz.test_config_files import altered
 
 INTEGERS = (0, 1, -1, 2, 3, 5, 9, 100, 2**31, 2**53 + 1, 2**63 - 1, -(2**63))
@@ -208,10 +209,10 @@ STRUCTURE: dict[str, Callable[[sqlite3.Connection, str, str, Any], Any]] = {
 }
 
 
-def check_on(program: Program, home: Path, line: CommandLine) -> None:
+def check_on(program: Forked, home: Path, line: CommandLine) -> None:
     """Run a command on the spoilt database and check what must hold."""
     args = [*line.command.words, *line.args, "--db", "spoilt.db"]
-    ended = program.run(args, home, {})
+    ended = program.run(args, home)
     check_ending(line.command.name, ended)
     if ended.code in {0, 1} and line.args.count("--json") == 1 and ended.out[:1] in b"[{":
         check_json(ended)
@@ -242,7 +243,7 @@ def test_every_content_of_a_database_is_worked_with_or_refused(
     changes: st.SearchStrategy[list[Change]],
     few: int,
     share: float,
-    program: Program,
+    program: Forked,
     place: Callable[[], Path],
     fuzzing: Fuzz,
 ) -> None:
@@ -262,7 +263,7 @@ def test_every_content_of_a_database_is_worked_with_or_refused(
 @pytest.mark.torture
 @pytest.mark.fault(13)
 def test_every_flipped_bit_of_a_database_is_worked_with_or_refused(
-    program: Program, place: Callable[[], Path], fuzzing: Fuzz
+    program: Forked, place: Callable[[], Path], fuzzing: Fuzz
 ) -> None:
     home = place()
     whole = (home / "filled.db").read_bytes()

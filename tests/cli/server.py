@@ -1,8 +1,11 @@
-"""The program forked for every attack: ``python -m tests.attack.server``.
+"""The program forked for every command, within bounds: ``python -m tests.cli.server``.
 
-As ``tests.fuzz.server``, but a command is named (its process id, a line of JSON) before it begins,
-so that it can be traced and signalled; it begins at a line on stdin. It may have a clock of its
-own, and little memory or room for files. The answer is the exit code, whether it was asked to
+As ``tests.cli.warm``, whose requests it takes; beside these each has `seconds`, after which the
+command is asked to stop, which it must do as after ctrl-C, and `bounds`: a clock of its own, little
+memory or room for files. A command is named (its process id, a line of JSON) before it begins, so
+that it can be traced and signalled; it begins at a line on stdin.
+
+The answer is a line of JSON: the exit code (negative: died of that signal), whether it was asked to
 stop, and the seconds of processor time that all commands so far took.
 """
 
@@ -19,7 +22,9 @@ from pathlib import Path
 from typing import Any
 
 from tests.cli.warm import import_everything, run, warm_up
-from tests.fuzz.server import TO_STOP, code_within
+
+TO_STOP = 20.0
+"""Seconds in which a command that is asked to stop must end; it takes some milliseconds."""
 
 
 def confine(bounds: dict[str, int]) -> None:
@@ -57,6 +62,18 @@ def begun(request: dict[str, Any], gate: int) -> None:
         confine(request["bounds"])
         run(request)
     os._exit(0)
+
+
+def code_within(child: int, seconds: float) -> int | None:
+    """Return the exit code of a child, None when it still runs after so many seconds."""
+    deadline, nap = time.monotonic() + seconds, 0.0005
+    while time.monotonic() < deadline:
+        pid, status = os.waitpid(child, os.WNOHANG)
+        if pid:
+            return os.waitstatus_to_exitcode(status)
+        time.sleep(nap)
+        nap = min(1.2 * nap, 0.02)
+    return None
 
 
 def serve() -> None:
