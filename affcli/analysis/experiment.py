@@ -1,9 +1,12 @@
 """What the robots of an experiment gave, condition by condition (§7)."""
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
+from affcli.analysis.paired import Comparison
+from affcli.core.records import FailedRobot
 from affcli.core.results import SuccessCount
 from affcli.core.specs import Protocol
 
@@ -18,6 +21,37 @@ class Tally(NamedTuple):
 
     solved: Mapping[int, int]
     tried: int
+
+
+class ConditionResult(NamedTuple):
+    """What the robots of one condition gave: its name and session, and its trials by kind."""
+
+    name: str
+    session: int
+    tallies: Mapping[str, Tally]
+
+
+@dataclass(frozen=True, slots=True)
+class ExperimentResult:
+    """What the robots of an experiment gave.
+
+    Args:
+        name, question: of the experiment.
+        robots: how many are saved.
+        learning_runs: how many they made.
+        results: of each condition, in order.
+        failed: the robots that could not live.
+        comparison: of the conditions with the first one, all trials of each kind; None where that
+            was not asked for, or there is nothing to compare.
+    """
+
+    name: str
+    question: str
+    robots: int
+    learning_runs: int
+    results: Sequence[ConditionResult]
+    failed: Sequence[FailedRobot]
+    comparison: Comparison | None = None
 
 
 def tallies(counts: Iterable[SuccessCount]) -> dict[str, Tally]:

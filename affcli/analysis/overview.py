@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from affcli.analysis.breaking import parts_gained
+from affcli.analysis.experiment import ExperimentResult
 from affcli.analysis.paper import EXTENSION_OF_REACH, other_parts, papers_break, papers_cell
 from affcli.analysis.reproduction import Reproduction
 from affcli.core.records import LearningRunInfo, SessionInfo, TrialInfo
@@ -114,22 +115,6 @@ class Breaking:
     grew: bool = False
 
 
-class ExperimentRuns(NamedTuple):
-    """How much an experiment is.
-
-    Args:
-        experiment: its name.
-        conditions: how many.
-        learning_runs: how many its robots made.
-        failed: the numbers of its robots that failed.
-    """
-
-    experiment: str
-    conditions: int
-    learning_runs: int
-    failed: tuple[int, ...] = ()
-
-
 @dataclass(frozen=True, slots=True)
 class Overview:
     """What a database holds.
@@ -152,7 +137,7 @@ class Overview:
     trials: int
     reproductions: Sequence[Reproduction]
     invalid: int = 0
-    experiments: Sequence[ExperimentRuns] = ()
+    experiments: Sequence[ExperimentResult] = ()
 
 
 def goal_counts(results: Iterable[Tried], runs: Iterable[LearningRunInfo]) -> list[GoalCounts]:

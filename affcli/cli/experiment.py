@@ -9,7 +9,6 @@ import typer
 
 from affcli import lab
 from affcli import store as stores
-from affcli.analysis.experiment import tallies
 from affcli.cli.database import opened, say_failed
 from affcli.cli.options import (
     DEFAULT_DATABASE,
@@ -22,11 +21,9 @@ from affcli.cli.options import (
 )
 from affcli.cli.terminal import now, progress, say, show_either
 from affcli.core.names import one_of
-from affcli.core.records import ExperimentInfo
 from affcli.core.specs import Keep
 from affcli.errors import BadInputError, UsageError, one_line
 from affcli.report.experiment import (
-    ConditionResult,
     Cost,
     cost_json,
     cost_table,
@@ -119,18 +116,15 @@ def experiment(
                 bar(saved, "")
         # Meanwhile another process may have asked for more robots.
         wished = store.experiments.named(what.name).definition["experiment"]["robots"]
-        results = _results(store, info)
-        failed = store.sessions.failed_robots(info.conditions[0][1])
-        there = len(store.sessions.saved_robots(info.conditions[0][1]))
-    of_all = f"{there}" if there == wished else f"{there} of {wished}"
+        result = lab.overview.experiment_of(store, info)
+    of_all = f"{result.robots}" if result.robots == wished else f"{result.robots} of {wished}"
     say(f"experiment {one_line(what.name)}: {of_all} robots, saved in {one_line(database)}")
-    said = (what.name, what.question, there, results, failed)
     show_either(
         as_json=as_json,
-        results=lambda: [experiment_json(*said)],
-        tables=lambda: experiment_tables(*said),
+        results=lambda: [experiment_json(result)],
+        tables=lambda: experiment_tables(result),
     )
-    return say_failed(failed)
+    return say_failed(result.failed)
 
 
 def _interrupted(store: "stores.Store", database: Path) -> "lab.experiment.Experiment":
@@ -158,11 +152,3 @@ def _say_cost(
         results=lambda: [cost_json(names, cost)],
         tables=lambda: [cost_table(what.name, names, cost)],
     )
-
-
-def _results(store: "stores.Store", info: ExperimentInfo) -> list[ConditionResult]:
-    """Return what each condition gave."""
-    return [
-        ConditionResult(name, session, tallies(store.results.success_counts(session)))
-        for name, session in info.conditions
-    ]

@@ -10,6 +10,11 @@ from affcli.errors import UsageError
 FIGURE_PACKAGES = ("matplotlib", "PIL")
 
 
+def can_draw() -> bool:
+    """Tell whether the packages which draw figures are installed."""
+    return None not in map(find_spec, FIGURE_PACKAGES)
+
+
 def require_figures() -> None:
     """Make sure that the packages which draw figures are installed, and load Matplotlib so that
     what is around the program decides nothing.
@@ -20,8 +25,7 @@ def require_figures() -> None:
     Raises:
         UsageError: one is missing.
     """
-    missing = [name for name in FIGURE_PACKAGES if find_spec(name) is None]
-    if missing:
+    if not can_draw():
         raise UsageError(
             "figures need Matplotlib and Pillow; install them: pip install 'affcli[figures]'"
         )

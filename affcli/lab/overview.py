@@ -1,9 +1,14 @@
 """What a database holds, read for the reports."""
 
-from affcli.analysis.overview import Breaking, ExperimentRuns, Overview, breaking_of, goal_counts
+from dataclasses import replace
+
+from affcli.analysis.experiment import ConditionResult, ExperimentResult, tallies
+from affcli.analysis.overview import Breaking, Overview, breaking_of, goal_counts
+from affcli.analysis.paired import Comparison, in_common
 from affcli.analysis.reproduction import Reproduction, failures_in
 from affcli.core.records import ExperimentInfo, LearningRunInfo
 from affcli.core.specs import Protocol
+from affcli.lab.conditions import Condition, counts_of
 from affcli.store import Store
 
 
@@ -53,19 +58,39 @@ def overview_of(store: Store) -> Overview:
     )
 
 
-def experiments_of(store: Store) -> list[ExperimentRuns]:
-    """Return the experiments that have robots, oldest first."""
-    learned = store.experiments.learned()
-    return [
-        ExperimentRuns(one.name, len(one.conditions), learned[one.name], _failed(store, one))
-        for one in store.experiments.all()
-        if one.name in learned
-    ]
+def experiments_of(store: Store) -> list[ExperimentResult]:
+    """Return what the experiments that have robots gave, with their conditions compared."""
+    every = (experiment_of(store, one) for one in store.experiments.all())
+    return [replace(one, comparison=_comparison(store, one)) for one in every if one.learning_runs]
 
 
-def _failed(store: Store, one: ExperimentInfo) -> tuple[int, ...]:
-    """Return the numbers of the robots of an experiment that failed."""
-    return tuple(robot.robot for robot in store.sessions.failed_robots(one.conditions[0][1]))
+def experiment_of(store: Store, info: ExperimentInfo) -> ExperimentResult:
+    """Return what the robots of an experiment gave."""
+    first = info.conditions[0][1]
+    return ExperimentResult(
+        info.name,
+        info.question,
+        len(store.sessions.saved_robots(first)),
+        store.experiments.learned().get(info.name, 0),
+        [
+            ConditionResult(name, session, tallies(store.results.success_counts(session)))
+            for name, session in info.conditions
+        ],
+        store.sessions.failed_robots(first),
+    )
+
+
+def _comparison(store: Store, one: ExperimentResult) -> Comparison | None:
+    """Return the conditions of an experiment compared with the first of them.
+
+    None where no other did the same tasks.
+    """
+    sessions = {session.id: session for session in store.sessions.all()}
+    first, *others = (Condition(c.name, sessions[c.session]) for c in one.results)
+    base = counts_of(store, first)
+    every = [counts_of(store, other) for other in others]
+    alike = [c for c in every if in_common(base, c) and base.cells.keys() & c.cells.keys()]
+    return Comparison.of(base, alike, ()) if alike else None
 
 
 def _is_twin(store: Store, run: LearningRunInfo) -> bool:

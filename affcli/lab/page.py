@@ -3,17 +3,20 @@
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
+from affcli.analysis.experiment import ExperimentResult
 from affcli.analysis.paper import TOOLS
 from affcli.analysis.reproduction import Reproduction
-from affcli.core.records import LearningRunInfo, TrialInfo
+from affcli.core.records import LearningRunInfo, SessionInfo, TrialInfo
 from affcli.core.replay import Replay
-from affcli.core.specs import Counters
+from affcli.core.specs import EXPERIMENT, Counters, Keep
 from affcli.core.trial import is_counted
 from affcli.errors import AffcliError, UsageError, one_line
+from affcli.lab.drawing import can_draw, require_figures
 from affcli.lab.learning_curves import curves_of, curves_of_robots
 from affcli.lab.overview import experiments_of, reproduction_of
 from affcli.lab.predicting import predict, prediction_spec
 from affcli.lab.replaying import replay_trial
+from affcli.report import figures
 from affcli.report.page.content import Broken, Content, LearnedRows
 from affcli.report.words import experiment_words, in_order
 from affcli.store import Store
@@ -71,7 +74,8 @@ def content_of(
     result = _reproduction(store, session)
     shown = _own(store, runs) if runs or not (robots or session) else None
     if shown is None:
-        shown = _of_reproduction(store, robots, result)
+        of = _session_of_experiment(store) if result is None else result.session
+        shown = _of_many(store, robots, of)
     replays, not_replayed = [], {}
     for number, trial in enumerate(shown.trials, 1):
         # What this affcli cannot do again is said on the page, and the rest is shown.
@@ -84,6 +88,7 @@ def content_of(
     others = [replace(_learned(store, run), filmed=False) for run in shown.others]
     every = [*shown.filmed, *shown.others]
     timed = [run for run in every if run.robot_seconds > 0.0]
+    experiments = experiments_of(store)
     bands = [] if every[0].session_id is None else curves_of_robots(store, every[0].session_id)[1]
     return Content(
         database=one_line(store.path.name),
@@ -100,7 +105,32 @@ def content_of(
         bands={one.tool: one for one in bands},
         verifications=store.results.verifications(run.id for run in every),
         not_shown=shown.not_shown,
+        experiments=experiments,
+        drawn=_drawn(experiments),
     )
+
+
+def _drawn(experiments: Iterable[ExperimentResult]) -> dict[str, bytes]:
+    """Return the figure of each comparison; none where the packages for figures are not there."""
+    if not can_draw():
+        return {}
+    require_figures()
+    most = figures.compare.MOST_CONDITIONS
+    return {
+        one.name: figures.canvas.encoded(figures.compare.compare_figure(one.comparison), ".svg")
+        for one in experiments
+        if one.comparison is not None and len(one.comparison.others) <= most
+    }
+
+
+def _session_of_experiment(store: Store) -> SessionInfo | None:
+    """Return the first condition of the latest experiment of whose robots all is kept."""
+    sessions = {session.id: session for session in store.sessions.all(EXPERIMENT)}
+    for one in reversed(store.experiments.all()):
+        first = sessions[one.conditions[0][1]]
+        if store.experiments.kept(one.id) is Keep.ALL:
+            return first
+    return None
 
 
 def _reproduction(store: Store, session: int | None) -> Reproduction | None:
@@ -152,9 +182,9 @@ def _own(store: Store, numbers: Sequence[int]) -> _Shown | None:
     )
 
 
-def _of_reproduction(store: Store, robots: Sequence[int], result: Reproduction | None) -> _Shown:
-    """Return the robots of a reproduction that were asked for, else its first, and some others."""
-    if result is None:
+def _of_many(store: Store, robots: Sequence[int], of: SessionInfo | None) -> _Shown:
+    """Return the robots of a session that were asked for, else its first, and some others."""
+    if of is None:
         where = one_line(store.path)
         if robots:
             raise UsageError(f"no robot {robots[0]} in {where}: there is no reproduction in it")
@@ -168,7 +198,6 @@ def _of_reproduction(store: Store, robots: Sequence[int], result: Reproduction |
             words = "; ".join(map(experiment_words, experiments))
             raise UsageError(f"no learning run or reproduction for a page in {where}; {words}")
         raise UsageError(f"nothing learned in {where}; first run: affcli learn --tool t-hook")
-    of = result.session
     runs: dict[int, list[LearningRunInfo]] = {}
     for run in store.learning.runs(session_id=of.id):
         runs.setdefault(run.spec.robot, []).append(run)
@@ -176,16 +205,27 @@ def _of_reproduction(store: Store, robots: Sequence[int], result: Reproduction |
     for number in asked:
         if number not in runs:
             raise UsageError(
-                f"no robot {number} in session {of.id}; they are numbered 0 to {result.robots - 1}"
+                f"no robot {number} in session {of.id}; they are numbered 0 to {max(runs)}"
             )
     more = [number for number in sorted(runs) if number not in asked][: MOST_ROBOTS - len(asked)]
     filmed, others = ([run for number in some for run in runs[number]] for some in (asked, more))
+    # What other conditions did with the same tables is not of this one.
+    others_did = {s.id for s in store.sessions.all(EXPERIMENT)} - {of.id}
     trials, theirs = (
-        sorted((t for run in some for t in store.trials.trials(run_id=run.id)), key=lambda t: t.id)
+        sorted(
+            (
+                trial
+                for run in some
+                for trial in store.trials.trials(run_id=run.id)
+                if trial.session_id not in others_did
+            ),
+            key=lambda trial: trial.id,
+        )
         for some in (filmed, others)
     )
     names = f"robot{'s' if len(asked) > 1 else ''} {', '.join(map(str, asked))}"
-    name = f"{names} of {result.robots}, seed {of.spec.seed}"
+    under = "" if of.condition is None else f" under {one_line(of.condition)}"
+    name = f"{names} of {len(runs)}{under}, seed {of.spec.seed}"
     return _Shown(
         name, filmed, others, trials, theirs, not_shown=len(runs) - len(asked) - len(more)
     )

@@ -1,23 +1,15 @@
 """An experiment in words and tables: what it will take, what its robots gave."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from statistics import fmean
 from typing import Any, NamedTuple
 
-from affcli.analysis.experiment import Tally
+from affcli.analysis.experiment import ExperimentResult, Tally
 from affcli.core.records import FailedRobot
 from affcli.report.sheet import Sheet
 from affcli.report.words import clock, many
 
 MEGABYTE = 1e6
-
-
-class ConditionResult(NamedTuple):
-    """What the robots of one condition gave: its name and session, and its trials by kind."""
-
-    name: str
-    session: int
-    tallies: Mapping[str, Tally]
 
 
 class Cost(NamedTuple):
@@ -75,33 +67,27 @@ def cost_table(name: str, conditions: Sequence[str], cost: Cost) -> Sheet:
     return table
 
 
-def experiment_json(
-    name: str,
-    question: str,
-    robots: int,
-    results: Sequence[ConditionResult],
-    failed: Sequence[FailedRobot],
-) -> dict[str, Any]:
+def experiment_json(one: ExperimentResult) -> dict[str, Any]:
     """Return what an experiment gave as JSON types."""
     return {
-        "experiment": name,
-        "question": question,
-        "robots": robots,
+        "experiment": one.name,
+        "question": one.question,
+        "robots": one.robots,
         "conditions": [
             {
-                "condition": one.name,
-                "session": one.session,
+                "condition": condition.name,
+                "session": condition.session,
                 "solved": {
                     kind: {
                         "trials": tally.tried,
                         "by_robot": [tally.solved[k] for k in sorted(tally.solved)],
                     }
-                    for kind, tally in one.tallies.items()
+                    for kind, tally in condition.tallies.items()
                 },
             }
-            for one in results
+            for condition in one.results
         ],
-        "failed": failed_json(failed),
+        "failed": failed_json(one.failed),
     }
 
 
@@ -126,26 +112,19 @@ def failed_tables(failed: Sequence[FailedRobot]) -> list[Sheet]:
     return [table] if failed else []
 
 
-def experiment_tables(
-    name: str,
-    question: str,
-    robots: int,
-    results: Sequence[ConditionResult],
-    failed: Sequence[FailedRobot],
-) -> list[Sheet]:
+def experiment_tables(one: ExperimentResult) -> list[Sheet]:
     """Return the mean of the successes under each condition by kind of trials; who failed."""
-    kinds = tuple(dict.fromkeys(kind for one in results for kind in one.tallies))
-    columns = ("condition", "session", *kinds)
+    kinds = tuple(dict.fromkeys(kind for condition in one.results for kind in condition.tallies))
     table = Sheet(
-        columns,
-        title=f"{name}: solved, mean of {many(robots, 'robot')}",
-        caption=question,
+        ("condition", "session", *kinds),
+        title=f"{one.name}: solved, mean of {many(one.robots, 'robot')}",
+        caption=one.question,
         left=("condition",),
     )
-    for one in results:
-        cells = (_cell(one.tallies.get(kind)) for kind in kinds)
-        table.add(one.name, str(one.session), *cells)
-    return [table, *failed_tables(failed)]
+    for condition in one.results:
+        cells = (_cell(condition.tallies.get(kind)) for kind in kinds)
+        table.add(condition.name, str(condition.session), *cells)
+    return [table, *failed_tables(one.failed)]
 
 
 def _cell(tally: Tally | None) -> str:

@@ -7,9 +7,12 @@ from typing import Any
 from rich.console import RenderableType
 from rich.text import Text
 
+from affcli.analysis.experiment import ExperimentResult
 from affcli.analysis.overview import Breaking, Overview, ProtocolCounts
 from affcli.analysis.paper import BROKEN, PLANNER, TASK_SET
+from affcli.report.experiment import experiment_json, experiment_tables
 from affcli.report.learning import groups_json, groups_table, learned_table, run_json
+from affcli.report.paired import comparison_json, comparison_tables
 from affcli.report.reproduction import failures_table, reproduction_json, reproduction_tables
 from affcli.report.sheet import Sheet
 from affcli.report.trials import counts_tables
@@ -30,10 +33,17 @@ def overview_tables(overview: Overview) -> list[RenderableType]:
         shown.append(failures_table(overview.failures, overview.trials, overview.invalid))
     for reproduction in overview.reproductions:
         shown += reproduction_tables(reproduction)
-    shown += [Text(experiment_words(one)) for one in overview.experiments]
+    for one in overview.experiments:
+        shown += [Text(experiment_words(one)), *experiment_sheets(one)]
     if not shown:
         shown.append(Text("nothing learned yet; first run: affcli learn --tool t-hook"))
     return shown
+
+
+def experiment_sheets(one: ExperimentResult) -> list[Sheet]:
+    """Return what an experiment gave under each condition, and the conditions compared."""
+    compared = comparison_tables(one.comparison) if one.comparison else []
+    return [*experiment_tables(one), *compared]
 
 
 def _breakings_table(breakings: Sequence[Breaking]) -> Sheet:
@@ -102,5 +112,12 @@ def overview_json(overview: Overview) -> dict[str, Any]:
         "trials": overview.trials,
         "invalid": overview.invalid,
         "reproductions": [reproduction_json(again) for again in overview.reproductions],
-        "experiments": [one._asdict() for one in overview.experiments],
+        "experiments": [
+            {
+                **experiment_json(one),
+                "learning_runs": one.learning_runs,
+                "comparison": one.comparison and comparison_json(one.comparison),
+            }
+            for one in overview.experiments
+        ],
     }

@@ -4,7 +4,7 @@ import json
 import shlex
 from collections.abc import Iterable
 
-from affcli.analysis.overview import ExperimentRuns
+from affcli.analysis.experiment import ExperimentResult
 from affcli.analysis.paper import PLANNER, other_parts
 from affcli.analysis.statistics import ENOUGH_ROBOTS, FEWEST
 from affcli.core.behavior import BehaviorCall
@@ -180,10 +180,10 @@ def in_order(names: Iterable[str]) -> list[str]:
     return sorted(set(names), key=lambda name: (not name.isdecimal(), len(name), name))
 
 
-def experiment_words(one: ExperimentRuns) -> str:
+def experiment_words(one: ExperimentResult) -> str:
     """Return how much an experiment is, and the command that shows what came of it."""
-    name = one_line(one.experiment)
-    command = f"compare {shlex.quote(name)}" if one.conditions > 1 else "runs list --all-runs"
+    name = one_line(one.name)
+    command = f"compare {shlex.quote(name)}" if len(one.results) > 1 else "runs list --all-runs"
     runs = many(one.learning_runs, "learning run")
     failed = f" ({many(len(one.failed), 'robot')} failed)" if one.failed else ""
     return f"{runs} of robots of the experiment {name}{failed}: affcli {command}"

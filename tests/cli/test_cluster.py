@@ -5,12 +5,14 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from affcli.lab import cluster
 from tests.cli.program import (
+    PATIENCE,
     contents,
     done,
     ending,
@@ -25,10 +27,11 @@ TEXT = """
 [experiment]
 name = "two"
 robots = 4
+tasks = ["extension-of-reach"]
 [base]
-minutes = 6
+minutes = 1
 tools = ["t-hook"]
-trial.max_steps = 3
+trial.max_steps = 2
 [[condition]]
 name = "paper"
 [[condition]]
@@ -74,35 +77,58 @@ def toml(tmp_path: Path) -> Path:
     return path
 
 
-def test_a_cluster_makes_the_database_that_one_worker_makes(toml: Path, tmp_path: Path) -> None:
-    """Also where one of its workers is killed, and one has other versions."""
-    file, both = tmp_path / "scheduler.json", tmp_path / "both.db"
-    older = tmp_path / "older" / "pymunk-6.9.0.dist-info"
-    older.mkdir(parents=True)
-    (older / "METADATA").write_text("Metadata-Version: 2.1\nName: pymunk\nVersion: 6.9.0\n")
+@pytest.mark.torture
+def test_whatever_is_killed_each_robot_is_saved_once(
+    toml: Path, tmp_path: Path, torture: bool, tell: Callable[[str], None]
+) -> None:
+    """The database is that of one worker; a worker of other versions gets no robot."""
+    robots, workers_killed, clients_killed = (200, 60, 10) if torture else (4, 1, 0)
+    toml.write_text(TEXT.replace("robots = 4", f"robots = {robots}"))
+    file, database = tmp_path / "scheduler.json", tmp_path / "both.db"
+    kills = sorted(
+        [(robots * k // (workers_killed + 1), "worker") for k in range(1, workers_killed + 1)]
+        + [(robots * k // (clients_killed + 1), "client") for k in range(1, clients_killed + 1)]
+    )
+    words = ("experiment", toml, "--keep", "trials", "--scheduler", file, "--db", database)
     with ExitStack() as stack:
         stack.enter_context(scheduling(file))
-        good = [stack.enter_context(working(file)) for _ in range(2)]
-        stack.enter_context(working(file, PYTHONPATH=str(older.parent)))
-        words = ("experiment", toml, "--scheduler", file, "--db", both)
+        there = [stack.enter_context(working(file)) for _ in range(2)]
+        stack.enter_context(working(file, PYTHONPATH=str(older_pymunk(tmp_path))))
         process = stack.enter_context(started(*words))
-        wait_until(both.exists, process)
-        wait_until(lambda: rows_in(both) > 0, process)
-        good[0].kill()
-        ended = ending(process)
+        for saved, what in kills:
+            wait_until(partial(reached, database, saved), process)
+            if what == "client":
+                process.kill()
+                process = stack.enter_context(started(*words))
+            else:
+                there.pop(0).kill()
+                there.append(stack.enter_context(working(file)))
+        ended = ending(process, 10 * PATIENCE)
     assert ended.code == 0, ended
-    done("experiment", toml, "--workers", "1", "--db", tmp_path / "one.db")
-    assert contents(both) == contents(tmp_path / "one.db")
     assert "has pymunk 6.9.0, but here it is 7." in ended.err
+    alone = tmp_path / "alone.db"
+    done(*words[:4], "--workers", "1", "--db", alone)
+    assert contents(database) == contents(alone)
+    assert rows(alone, "SELECT count(DISTINCT robot) FROM trial") == [(robots,)]
+    tell(f"{workers_killed} workers and {clients_killed} clients killed in {robots} robots")
 
 
-def rows_in(database: Path) -> int:
-    """Return how many robots are saved; 0 where there is no schema yet."""
-    try:
-        ((count,),) = rows(database, "SELECT count(DISTINCT robot) FROM trial")
-    except Exception:  # noqa: BLE001  # no schema yet
-        return 0
-    return int(count)
+def older_pymunk(folder: Path) -> Path:
+    """Return where a Python finds pymunk of another version than ours, by its name alone."""
+    place = folder / "older"
+    (place / "pymunk-6.9.0.dist-info").mkdir(parents=True)
+    metadata = "Metadata-Version: 2.1\nName: pymunk\nVersion: 6.9.0\n"
+    (place / "pymunk-6.9.0.dist-info" / "METADATA").write_text(metadata)
+    return place
+
+
+def reached(database: Path, robots: int) -> bool:
+    """Tell whether so many robots are saved."""
+    if not database.exists():
+        return False
+    (there,) = rows(database, "SELECT count(*) FROM sqlite_master WHERE name = 'trial'")
+    counted = "SELECT count(DISTINCT robot) FROM trial"
+    return there == (1,) and rows(database, counted)[0][0] >= robots
 
 
 def test_it_waits_for_workers_and_ends_in_a_line_when_told_or_left_alone(

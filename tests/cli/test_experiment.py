@@ -178,13 +178,21 @@ def test_resume_alone_keeps_as_much_of_lives_as_before(file: Path, tmp_path: Pat
 
 def test_other_commands_name_the_experiment(lived: Path, tmp_path: Path) -> None:
     words = "4 learning runs of robots of the experiment two: affcli compare two"
-    assert done("report", "--db", lived).out == f"{words}\n"
-    assert done("report", "--json", "--db", lived).result["experiments"] == [
-        {"experiment": "two", "conditions": 2, "learning_runs": 4, "failed": []}
-    ]
+    shown = done("report", "--db", lived).out
+    assert shown.startswith(f"{words}\n\ntwo: solved, mean of 2 robots\n")
+    assert "\nrough against paper: 2 pairs of robots, of 16 trials\n" in shown
+    (one,) = done("report", "--json", "--db", lived).result["experiments"]
+    assert (one["experiment"], one["robots"], one["learning_runs"]) == ("two", 2, 4)
+    assert [condition["condition"] for condition in one["conditions"]] == ["paper", "rough"]
+    totals = done("compare", "two", "--json", "--db", lived).result["totals"]
+    assert one["comparison"]["totals"] == totals
     page = tmp_path / "page.html"
-    line = refused(2, "report", "--html", page, "--db", lived)
-    assert line == f"affcli: no learning run or reproduction for a page in {lived}; {words}"
+    said = done("report", "--html", page, "--db", lived).err
+    assert said == f"robot 0 of 2 under paper, seed 0, 32 trials to replay: {page}\n"
+    text = page.read_text()
+    assert '<h2 id="experiment-1">Does the friction matter?</h2>' in text
+    assert "rough against paper: 2 pairs of robots, of 16 trials" in text
+    assert '<img class="compared" src="data:image/svg+xml;base64,' in text
     listed = done("runs", "list", "--db", lived).err
     assert listed.splitlines() == ["no runs", "and 4 of robots of experiments: --all-runs"]
     line = refused(2, "runs", "delete", "3", "--yes", "--db", lived)

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from affcli.analysis.curves import Curve, ToolCurves
+from affcli.analysis.experiment import ExperimentResult
 from affcli.analysis.prediction import Push
 from affcli.analysis.reproduction import Reproduction
 from affcli.core.affordance import Affordance
@@ -61,6 +62,8 @@ class Content:
         bands: the same of all robots of the reproduction, by tool.
         verifications: what tests of these tables found.
         not_shown: how many robots more there are.
+        experiments: what they gave.
+        drawn: the comparison of an experiment's conditions as SVG, by its name, where it was drawn.
         not_replayed: its trials that this affcli cannot do again, each with the reason.
         left_out: trials of the same robot that are not shown.
         broken: each tool of its that broke.
@@ -81,3 +84,5 @@ class Content:
     bands: Mapping[str, ToolCurves] = field(default_factory=dict)
     verifications: Sequence[VerificationResult] = ()
     not_shown: int = 0
+    experiments: Sequence[ExperimentResult] = ()
+    drawn: Mapping[str, bytes] = field(default_factory=dict)

@@ -1,5 +1,6 @@
 """The page as one file of HTML: text is escaped, and nothing is loaded from elsewhere."""
 
+from base64 import b64encode
 from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -9,6 +10,7 @@ from markupsafe import Markup
 
 from affcli import __version__
 from affcli.analysis.breaking import missing_side
+from affcli.analysis.experiment import ExperimentResult
 from affcli.analysis.overview import Tried, goal_counts
 from affcli.analysis.paper import (
     BROKEN_TRIALS,
@@ -22,6 +24,7 @@ from affcli.core.specs import Protocol
 from affcli.core.trial import Outcome
 from affcli.errors import one_line
 from affcli.report.json_table import plain
+from affcli.report.overview import experiment_sheets
 from affcli.report.page import answers, charts, drawings, films
 from affcli.report.page.content import Broken, Content, LearnedRows
 from affcli.report.prediction import predictions_table
@@ -31,6 +34,7 @@ from affcli.report.verification import verifications_table
 from affcli.report.words import (
     call_words,
     clock,
+    experiment_words,
     few_robots_note,
     in_order,
     run_words,
@@ -113,8 +117,20 @@ def render(content: Content, command: str) -> str:
         kinds=KINDS,
         goals=GOALS,
         sums={"total": TRIALS, "broken": BROKEN_TRIALS},
+        experiments=[_experiment_section(one, content.drawn) for one in content.experiments],
         **_results(content),
     )
+
+
+def _experiment_section(one: ExperimentResult, drawn: Mapping[str, bytes]) -> dict[str, Any]:
+    """Return what the page shows of an experiment."""
+    picture = drawn.get(one.name)
+    return {
+        "question": one.question or one.name,
+        "words": experiment_words(one),
+        "sheets": experiment_sheets(one),
+        "picture": picture and f"data:image/svg+xml;base64,{b64encode(picture).decode()}",
+    }
 
 
 def _listed(content: Content, whose: Mapping[int, str]) -> list[dict[str, Any]]:
