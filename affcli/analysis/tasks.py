@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean, median
 
+from affcli.core.choice import plan_followed
 from affcli.core.goal import Goal
 from affcli.core.specs import TrialSpec
 from affcli.core.trial import Outcome, StepRecord, TrialEnd, is_counted
@@ -71,7 +72,6 @@ def error_of(step: StepRecord) -> float:
 
     Expected by the plan that was followed, where there is one; else by the row.
     """
-    plans = [reason.moves for reason in step.reasons if reason.moves]
-    if plans:
-        return math.dist((plans[0][0].x, plans[0][0].y), step.end.object_position)
+    for move in plan_followed(step.reasons)[:1]:
+        return math.dist((move.x, move.y), step.end.object_position)
     return math.dist(step.expected, step.seen)

@@ -133,6 +133,12 @@ FIGURE = Group(
             "affcli figure trial 11 --out trial.pdf",
         ),
         Command(
+            "plan",
+            "figure_tested:plan",
+            "Draw what a planner looked at in one step of a trial.",
+            "affcli figure plan TRIAL STEP --out plan.pdf",
+        ),
+        Command(
             "results",
             "figure_tested:results",
             "Draw our intervals with the paper's counts.",

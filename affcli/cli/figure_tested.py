@@ -1,4 +1,4 @@
-"""``affcli figure trial``, ``results`` and ``adaptation``: figures of testing trials (§7)."""
+"""``affcli figure trial``, ``plan``, ``results``, ``adaptation``: figures of trials (§7)."""
 
 from functools import partial
 from typing import Annotated
@@ -14,10 +14,11 @@ from affcli.cli.options import (
     check_count,
     checked_range,
 )
-from affcli.errors import BadInputError
+from affcli.errors import BadInputError, UsageError
 from affcli.report import figures
 from affcli.report.captions import Words, adaptation_words, joined, results_words
 from affcli.report.film import MOST_NAMED, shown_of
+from affcli.report.words import plan_words
 
 Session = Annotated[
     int | None,
@@ -60,6 +61,39 @@ def trial(
     shown = shown_of(film.steps, wanted)
     words = Words(film.title, joined(film.course, shown.note, film.caption))
     return Figure(words, partial(figures.trial.trial_figure, film, shown))
+
+
+@figure
+def plan(
+    number: Annotated[
+        int,
+        typer.Argument(
+            help="A trial's id in the database.", metavar="TRIAL", parser=check_count("TRIAL")
+        ),
+    ],
+    step: Annotated[
+        int,
+        typer.Argument(help="One of its steps.", metavar="STEP", parser=check_count("STEP")),
+    ],
+    *,
+    database: Database = DEFAULT_DATABASE,
+) -> Figure:
+    """Draw what a planner looked at in one step of a trial.
+
+    The moves ahead as it expected them, the plans that came close, and where the step left the
+    attractor. Only planners that look ahead tell plans.
+    """
+    with opened(database) as store:
+        film = lab.film_strips.film_of(store, number, (step, step))
+    shown = next(one for one in film.steps if one.number == step)
+    said = plan_words(shown.reasons)
+    if not said:
+        raise UsageError(
+            f"step {step} of trial {number} has no plan: its planner does not look ahead; solve "
+            "with --planner lookahead"
+        )
+    words = Words(f"{film.title}, step {step}", joined(said[0], film.caption))
+    return Figure(words, partial(figures.plan.plan_figure, film, shown))
 
 
 @figure

@@ -88,6 +88,13 @@ class Reason(NamedTuple):
 Reasons = tuple[Reason, ...]
 
 
+def plan_followed(reasons: Reasons) -> tuple[Move, ...]:
+    """Return the moves of the plan that a planner follows, that of this step first; none of a
+    planner that does not look ahead.
+    """
+    return next((reason.moves for reason in reasons if reason.moves), ())
+
+
 class Candidate(NamedTuple):
     """A row that a planner weighed.
 

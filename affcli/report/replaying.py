@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from affcli.analysis.paper import PLANNER
+from affcli.core.choice import plan_followed
 from affcli.core.geometry import Point
 from affcli.core.replay import Difference, Replay, ReplayedBehavior, ReplayedStep
 from affcli.core.scene import Scene
@@ -46,6 +47,7 @@ class Frame:
         words: what there is to say, one paragraph each.
         workspace: where it takes place.
         braille: the terminal can show braille letters.
+        ahead: where the plan that is followed should leave the attractor (in, table frame).
     """
 
     title: str
@@ -55,6 +57,7 @@ class Frame:
     words: Sequence[str]
     workspace: Workspace
     braille: bool
+    ahead: Sequence[Point] = ()
 
     def __rich_console__(
         self, console: Console, options: ConsoleOptions
@@ -66,7 +69,11 @@ class Frame:
         if console.is_terminal:
             down = min(down, console.height - BESIDE_THE_MAP)
         view = View.of(self.workspace, across, max(MAP_ROWS, down))
-        drawn = table_map(self.scene, self.workspace, self.path, view, braille=self.braille)
+        drawn = table_map(
+            *(self.scene, self.workspace, self.path, view),
+            braille=self.braille,
+            ahead=self.ahead,
+        )
         width = columns - (view.columns + GAP if columns >= WIDE else 0)
         # Further lines of a paragraph are indented, so that it is seen where the next begins.
         words = "\n".join(
@@ -131,12 +138,13 @@ def trial_frames(replay: Replay, number: int, *, braille: bool) -> Iterator[Fram
     title, (why, outcome) = step_title(replay, number), step_words(replay, one)
     path = [s.attractor.point for done in replay.steps[:number] for s in done.scenes]
     began = len(path) - len(one.scenes)
+    ahead = [Point(move.x, move.y) for move in plan_followed(one.step.record.reasons)]
     for frame, scene in enumerate(one.scenes):
         phase = phase_line(0 if frame == 0 else 1 if frame < one.placed else 2, behavior)
         so_far = path[: began + frame + 1]
-        yield Frame(title, phase, scene, so_far, why, workspace, braille)
-    words = [*why, *outcome]
-    yield Frame(title, phase_line(3, behavior), one.scenes[-1], path, words, workspace, braille)
+        yield Frame(title, phase, scene, so_far, why, workspace, braille, ahead)
+    words, phase = [*why, *outcome], phase_line(3, behavior)
+    yield Frame(title, phase, one.scenes[-1], path, words, workspace, braille, ahead)
 
 
 def opening_frame(replay: Replay, *, braille: bool) -> Frame:

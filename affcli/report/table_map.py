@@ -40,6 +40,7 @@ class Layer(NamedTuple):
 
 EDGE = Layer(".", Style(dim=True))
 GOAL = Layer("+", Style(color="cyan"))
+AHEAD = Layer("?", Style(color="bright_blue"))
 PATH = Layer(":", Style(color="yellow"))
 TOOL = Layer("#", Style(color="green", bold=True))
 PUCK = Layer("o", Style(color="bright_red", bold=True))
@@ -91,7 +92,13 @@ class View:
 
 
 def table_map(
-    scene: Scene, workspace: Workspace, path: Sequence[Point], view: View, *, braille: bool
+    scene: Scene,
+    workspace: Workspace,
+    path: Sequence[Point],
+    view: View,
+    *,
+    braille: bool,
+    ahead: Sequence[Point] = (),
 ) -> Text:
     """Return what is on the table as lines of letters, the robot at the lower edge.
 
@@ -101,6 +108,7 @@ def table_map(
         path: where the attractor has been (in, table frame).
         view: what to show.
         braille: with braille letters, eight dots each; without, one letter for each thing.
+        ahead: where a plan should leave the attractor, move by move (in, table frame).
     """
     x, y = view.places()
     table, line = workspace.table, 0.6 * view.inches
@@ -110,6 +118,10 @@ def table_map(
         (gx, gy), half = scene.goal.center, scene.goal.half_width
         goal = _frame(x, y, (gx - half, gy - half, gx + half, gy + half), line)
         layers.append((GOAL, goal))
+    rim = workspace.puck.radius
+    for ghost in ahead:
+        ring = np.abs(np.hypot(x - ghost.x, y - ghost.y) - rim) < line
+        layers.append((AHEAD, ring))
     layers.append((PATH, view.dots_at(path)))
     placed = (part.placed(scene.wrist) for part in scene.tool.outlines)
     parts = [_polygon(x, y, part, view.inches) for part in placed]

@@ -271,3 +271,15 @@ def test_a_table_of_any_size_fits(braille: bool) -> None:
         lines = drawn(scene(), view, braille=braille, workspace=workspace)
         assert len(lines) <= 18
         assert max(map(len, lines)) <= 40
+
+
+def test_where_a_plan_should_leave_the_attractor_is_a_ring_there() -> None:
+    here = scene(Point(0.0, 20.0))
+    view = View.of(WORKSPACE, 42, 18)
+    plain, planned = (
+        table_map(here, WORKSPACE, (), view, braille=False, ahead=ahead).plain
+        for ahead in ((), (Point(8.0, 24.0),))
+    )
+    assert "?" not in plain
+    assert planned.count("?") >= 4
+    assert planned.replace("?", " ") == plain

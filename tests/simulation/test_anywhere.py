@@ -80,9 +80,9 @@ def test_where_no_tool_reaches_it_is_said_at_once() -> None:
         anywhere(far, 1.0, 1, 0)
 
 
-def test_a_goal_as_large_as_the_table_leaves_no_start() -> None:
+def test_a_table_that_tools_and_goal_cover_leaves_no_task() -> None:
     narrow = replace(WORKSPACE, table=TableSurface(half_width=1.0, near=15.0, far=24.0))
-    with pytest.raises(BadInputError, match="no place for a goal"):
+    with pytest.raises(BadInputError, match="no place for a"):
         anywhere(narrow, 10.0, 20, 0)
 
 

@@ -162,6 +162,8 @@ def _given(one: Any, name: str) -> str:
         return f"{option} out.{ending}"
     if one.metavar == "QUERY":
         return "'select * from affordance_table'"
+    if one.metavar == "STEP":
+        return "1"
     named = {"figure trial": "trial", "runs show": "learning_run"}
     table = named.get(name) or LATEST.get(option) or LATEST[one.metavar]
     return f"{option} {{{table}}}"

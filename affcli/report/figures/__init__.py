@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from affcli.report.figures import compare as compare
     from affcli.report.figures import curve as curve
     from affcli.report.figures import learning as learning
+    from affcli.report.figures import plan as plan
     from affcli.report.figures import prediction as prediction
     from affcli.report.figures import results as results
     from affcli.report.figures import row as row

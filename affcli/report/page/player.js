@@ -97,6 +97,7 @@
       make("text", { class: "label", x: x + 0.3, y: -y + 1.2 }, svg).textContent = /^\d+$/.test(trial.goal) ? `G${trial.goal}` : trial.goal;
     }
     make("text", { class: "label", x: 0, y: -bottom - 0.5, "text-anchor": "middle" }, svg).textContent = "the robot stands here";
+    const ghosts = make("g", {}, flip);
     const path = make("polyline", { class: "path" }, flip);
     const missing = trial.held.map((one) => {
       const group = make("g", {}, flip);
@@ -117,7 +118,7 @@
     const seen = make("path", { class: "seen", "marker-end": "url(#head-seen)" }, flip);
     const marker = make("marker", { id: "head-seen", viewBox: "0 0 6 6", refX: 5, refY: 3, markerWidth: 4, markerHeight: 4, orient: "auto" }, make("defs", {}, svg));
     make("path", { d: "M0 .6L6 3L0 5.4z", fill: "currentColor" }, marker);
-    drawn = { path, missing, puck, tools, expected, seen };
+    drawn = { path, missing, puck, tools, expected, seen, ghosts };
   }
 
   const stepAt = (f) => {
@@ -179,6 +180,7 @@
     const first = inStep === 0, ended = inStep === step.frames - 1;
     const arrow = (node, [dx, dy, words], on) => node.setAttribute("d", on && words !== "none" ? `M${step.at[0]} ${step.at[1]}l${dx} ${dy}` : "");
     arrow(drawn.expected, step.expected, true);
+    ahead(i);
     arrow(drawn.seen, step.seen, ended);
     let phase = inStep < step.placed ? "position wrist" : step.close[0][1];
     let boxes = [inStep < step.placed ? "place" : "explore"];
@@ -202,6 +204,27 @@
     });
   }
 
+  const plansOf = (step) => step.reasons.filter(({ moves }) => moves);
+
+  /** Show where the plan of step i should leave the puck, move by move. */
+  function ahead(i) {
+    if (drawn.ghosts.dataset.step === String(i)) return;
+    drawn.ghosts.dataset.step = String(i);
+    drawn.ghosts.replaceChildren();
+    for (const { x, y } of plansOf(trial.steps[i])[0]?.moves ?? []) make("circle", { class: "ghost", cx: x, cy: y, r: world.puck }, drawn.ghosts);
+  }
+
+  /** Say what a planner that looks ahead weighed in a step; nothing for another. */
+  function plans(step) {
+    const told = plansOf(step).map(({ name, value, moves }) => html("li", `${name}: ` +
+      moves.map(({ behavior, x, y }) => `${behavior} to (${x.toFixed(1)}, ${y.toFixed(1)})`).join(", ") +
+      (value === null ? "" : `; ${value.toFixed(1)} steps to the goal`)));
+    if (!told.length) return [];
+    const list = html("ul", "", "plans");
+    list.append(...told);
+    return [list];
+  }
+
   function now(words) {
     byId("now").textContent = `Now: ${words}; ${(frame / RATE).toFixed(1)} s of the robot's time.`;
     byId("scrub").setAttribute("aria-valuetext", words);
@@ -220,7 +243,7 @@
     const funnel = html("table", "", "funnel");
     funnel.append(html("caption", nested() ? "Rows that each search left" : "What the planner went by"));
     const most = Math.max(1, ...step.reasons.map((reason) => reason.rows ?? 0));
-    const reasons = step.reasons.map(({ name, rows, value }) => [nested() && NAMES[name] ? NAMES[name](value) : name, rows, value]);
+    const reasons = step.reasons.filter(({ moves }) => !moves).map(({ name, rows, value }) => [nested() && NAMES[name] ? NAMES[name](value) : name, rows, value]);
     for (const [name, count, value] of [...reasons, [nested() ? "4: least re-positioning" : "chosen", 1, null]]) {
       const row = funnel.insertRow();
       const head = html("th", name);
@@ -266,7 +289,7 @@
     scroll.setAttribute("role", "region");
     scroll.setAttribute("aria-label", "Rows that came close");
     scroll.append(others);
-    box.replaceChildren(html("h3", `Step ${i + 1}: why this row?`), lead, funnel, scroll, outcome);
+    box.replaceChildren(html("h3", `Step ${i + 1}: why this row?`), lead, funnel, ...plans(step), scroll, outcome);
     if (i === trial.steps.length - 1) box.append(ending());
     if (timer === undefined) byId("said").textContent = `Step ${i + 1}: row ${id}, ${behavior}, ${word}`;
   }
