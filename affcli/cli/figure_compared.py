@@ -14,9 +14,6 @@ from affcli.errors import UsageError
 from affcli.report import figures
 from affcli.report.captions import comparison_words, conditions_words
 
-MOST_COURSES = 6
-"""Conditions that a figure of curves tells apart."""
-
 
 @figure
 def compare(
@@ -68,7 +65,6 @@ def curve(
     with opened(database) as store:
         conditions = conditions_named(store, experiment, sessions, 1)
         found = lab.courses.curves_of(store, conditions, y, x)
-    if len({line.name for line in found.lines}) > MOST_COURSES:
-        raise UsageError(f"{MOST_COURSES} conditions fit; name fewer with --session")
+    figures.curve.require_few(found.lines)
     words = conditions_words(f"{found.y.capitalize()} against {found.x}", conditions)
     return Figure(words, partial(figures.curve.curve_figure, found.lines, found.x, found.y))
