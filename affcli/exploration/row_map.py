@@ -1,5 +1,6 @@
 """Where rows start, behavior by behavior: a try there gives no new row."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -9,8 +10,8 @@ from affcli.core.babbling_box import BabblingSettings
 from affcli.core.geometry import Point
 from affcli.exploration.grid import DIGITS, Grid, read, written
 
-MOST_CELLS = 40
-"""Along a side."""
+MOST_CELLS, LARGEST = 40, 50_000
+"""Cells along a side; and those of all behaviors, so that the state has room in a database."""
 MOST_ROWS = len(DIGITS) - 1
 """Of one behavior in one cell; more of them say nothing more."""
 HUNDRED = 100
@@ -30,7 +31,8 @@ class RowMap:
     """
 
     def __init__(self, behaviors: int, box: BabblingSettings, cell: float, near: float) -> None:
-        self.grid = Grid.about(box, 0.0, cell, MOST_CELLS)
+        most = max(1, min(MOST_CELLS, math.isqrt(LARGEST // behaviors)))
+        self.grid = Grid.about(box, 0.0, cell, most)
         self._rows = np.zeros((behaviors, *self.grid.shape), dtype=np.int64)
         self._nearby = np.zeros_like(self._rows)
         reach = int(TAIL * near / self.grid.cell)
