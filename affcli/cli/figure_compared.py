@@ -59,8 +59,9 @@ def curve(
 
     Solved trials, rows of a table, or the share of behaviors with an effect; the mean of the robots
     with its 95 % interval. Rows and share are followed over minutes or rows; solved trials are a
-    mark for each condition there. Against a setting each condition is a point, joined with those
-    that differ in nothing else.
+    mark for each condition there, joined along minutes with those whose names differ in minutes
+    alone. Against a setting each condition is a point, joined with those that differ in nothing
+    else.
     """
     with opened(database) as store:
         conditions = conditions_named(store, experiment, sessions, 1)
