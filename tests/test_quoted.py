@@ -125,7 +125,7 @@ LIMITS = {
     **{f"behaviors: {name}: offset_distance": (0.1, 20.0) for name in MOVING},
     **{
         f"explorers: {name}: {param}": limits
-        for name in ("goal-babbling", "information-gain", "occupancy")
+        for name in ("goal-babbling", "information-gain", "occupancy", "thompson")
         for param, limits in {
             "contact": (0.001, 0.5),
             "cell": (0.1, 5.0),
