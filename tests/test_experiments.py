@@ -1,8 +1,10 @@
-"""Each experiment of ``experiments/`` that is a file runs: here with one short robot."""
+"""Each experiment of ``experiments/`` that is a file runs: here with two short robots."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -10,32 +12,50 @@ from affcli.config import toml_file
 from affcli.core.specs import LIVES
 from affcli.lab.conducting import begin, run
 from affcli.lab.definition import experiment_file, experiment_of
+from affcli.lab.experiment import ADAPTATION
 from affcli.store import open_store
 from tests.lab.quick import now
 from tests.readmes import ROOT
 
 FILES = sorted((ROOT / "experiments").rglob("*.toml"))
 SHORT = {"minutes": 2, "settings": {"trial": {"max_steps": 3}}}
+SHORTER = 30.0
+"""So many times shorter are the times that conditions have of their own."""
+
+
+def shortened(tables: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return what a file says, of robots that learn and try for a short time; where there are
+    several conditions, with one tool.
+    """
+    conditions = [
+        {key: value / SHORTER if key == "minutes" else value for key, value in one.items()}
+        for one in tables.get("condition", [])
+    ]
+    base = {**tables.get("base", {}), **SHORT}
+    if conditions:
+        return {**tables, "base": {**base, "tools": ["t-hook"]}, "condition": conditions}
+    return {**tables, "base": base}
 
 
 def test_each_folder_with_robots_has_its_file() -> None:
     whole = {path.parent.name for path in FILES if path.name == "experiment.toml"}
-    assert whole == {"camera", "extension_of_reach", "tool_adaptation"}
+    assert whole == {"camera", "exploration", "extension_of_reach", "tool_adaptation"}
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}/{path.name}")
-def test_a_short_robot_lives(path: Path, tmp_path: Path) -> None:
+def test_two_short_robots_live(path: Path, tmp_path: Path) -> None:
     whole, tables = experiment_file(path), toml_file(path, "")
-    short = experiment_of({**tables, "base": {**tables.get("base", {}), **SHORT}}, "a test")
+    short = experiment_of(shortened(tables), "a test")
     assert [c.name for c in short.conditions] == [c.name for c in whole.conditions]
     with open_store(tmp_path / "short.db", create=True, write=True) as store:
-        info = begin(store, replace(short, robots=1), now)
-        assert list(run(store, replace(short, robots=1), info, 1, now)) == [0, 1]
+        info = begin(store, replace(short, robots=2), now)
+        assert list(run(store, replace(short, robots=2), info, 1, now)) == [0, 1, 2]
         assert store.experiments.named(whole.name).status == "done"
         for condition, (name, session) in zip(short.conditions, info.conditions, strict=True):
             trials = store.trials.trials(session_id=session)
-            assert len(trials) == 16 * len(condition.tools) + 16, name
-            assert {trial.spec.robot for trial in trials} == {0}
+            broken = ADAPTATION in condition.tasks
+            assert len(trials) == 2 * 16 * (len(condition.tools) + broken), name
+            assert {trial.spec.robot for trial in trials} == {0, 1}
         assert len(store.sessions.all(*LIVES)) == len(info.conditions)
 
 

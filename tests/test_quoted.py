@@ -123,6 +123,17 @@ LIMITS = {
     "bindings: grasp: angle": (-180.0, 180.0),
     "bindings: grasp: grasp_point": (0.0, 100.0),
     **{f"behaviors: {name}: offset_distance": (0.1, 20.0) for name in MOVING},
+    **{
+        f"explorers: {name}: {param}": limits
+        for name in ("goal-babbling", "information-gain", "occupancy", "thompson")
+        for param, limits in {
+            "contact": (0.001, 0.5),
+            "cell": (0.1, 5.0),
+            "near": (0.1, 10.0),
+            "places": (0.0, 100.0),
+            "place": (1.0, 20.0),
+        }.items()
+    },
     "planners: nested-query: angle_degrees": (1.0, 180.0),
     "planners: nested-query: share": (0.001, 1.0),
     "planners: nested-query: threshold": (0.0, 0.999),

@@ -14,9 +14,6 @@ from affcli.errors import UsageError
 from affcli.report import figures
 from affcli.report.captions import comparison_words, conditions_words
 
-MOST_COURSES = 6
-"""Conditions that a figure of curves tells apart."""
-
 
 @figure
 def compare(
@@ -62,13 +59,13 @@ def curve(
 
     Solved trials, rows of a table, or the share of behaviors with an effect; the mean of the robots
     with its 95 % interval. Rows and share are followed over minutes or rows; solved trials are a
-    mark for each condition there. Against a setting each condition is a point, joined with those
-    that differ in nothing else.
+    mark for each condition there, joined along minutes with those whose names differ in minutes
+    alone. Against a setting each condition is a point, joined with those that differ in nothing
+    else.
     """
     with opened(database) as store:
         conditions = conditions_named(store, experiment, sessions, 1)
         found = lab.courses.curves_of(store, conditions, y, x)
-    if len({line.name for line in found.lines}) > MOST_COURSES:
-        raise UsageError(f"{MOST_COURSES} conditions fit; name fewer with --session")
+    figures.curve.require_few(found.lines)
     words = conditions_words(f"{found.y.capitalize()} against {found.x}", conditions)
     return Figure(words, partial(figures.curve.curve_figure, found.lines, found.x, found.y))

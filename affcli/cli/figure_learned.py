@@ -34,7 +34,9 @@ from affcli.core.specs import LIVES
 from affcli.errors import UsageError
 from affcli.report import figures
 from affcli.report.captions import (
+    LEARNING,
     curves_words,
+    experiment_words,
     robots_words,
     tools_words,
     workspace_words,
@@ -183,6 +185,10 @@ def tools(
 @figure
 def learning(
     *,
+    experiment: Annotated[
+        str | None,
+        typer.Argument(help="What its robots solved after so long.", metavar="EXPERIMENT"),
+    ] = None,
     run: Annotated[
         list[int] | None,
         typer.Option(
@@ -211,14 +217,22 @@ def learning(
 ) -> Figure:
     """Draw how learning went over robot time.
 
-    Rows made, and the share of behaviors that had an effect so far.
+    Of an experiment: solved trials by how long its robots learned, the mean of the robots with its
+    95 % interval. Conditions whose names differ in nothing but "minutes=N" are joined: a line for
+    each way to explore.
+
+    Else rows made, and the share of behaviors that had an effect so far.
 
     One line for each learning run. Of more than 12, and with --session of the robots of a
     reproduction, the mean with its 95 % interval and the central 95 % of robots, a panel a tool.
     """
-    if run and (tool or session is not None):
-        raise UsageError("give --run alone, without --tool and --session")
+    if run and (tool or session is not None or experiment is not None):
+        raise UsageError("give --run alone, without EXPERIMENT, --tool and --session")
     names = tool or ()
+    if experiment is not None:
+        if session is not None:
+            raise UsageError("give EXPERIMENT or --session, not both")
+        return _success(experiment, names, database)
     with opened(database) as store:
         if session is not None:
             info, kinds = lab.learning_curves.curves_of_robots(store, session, names)
@@ -231,6 +245,16 @@ def learning(
     if len(curves) > figures.learning.MOST_CURVES:
         draw = partial(figures.learning.bands_figure, lab.learning_curves.by_kind(curves))
     return Figure(curves_words(curves), draw)
+
+
+def _success(experiment: str, tools: Sequence[str], database: Path) -> Figure:
+    """Return the figure of what robots of an experiment solved by how long they learned."""
+    with opened(database) as store:
+        conditions = lab.conditions.experiment_named(store, experiment)
+        found = lab.courses.curves_of(store, conditions, "solved", "minutes", tools)
+    figures.curve.require_few(found.lines)
+    words = experiment_words(LEARNING, experiment, conditions, tools)
+    return Figure(words, partial(figures.curve.curve_figure, found.lines, found.x, found.y))
 
 
 def _chosen_run(

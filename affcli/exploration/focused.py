@@ -7,6 +7,7 @@ tries in one way and remember the same; each is a function that says how interes
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -40,9 +41,12 @@ PARAMS: Mapping[str, Setting] = {
         "How much a try loses with each that began about where it would leave the attractor.",
         *(0.0, 100.0),
     ),
-    "place": Setting(2.0, "in", "Width of the cells of the table in which that counts.", 0.5, 20.0),
+    "place": Setting(2.0, "in", "Width of the cells of the table in which that counts.", 1.0, 20.0),
 }
 """Of all focused explorers. The defaults were chosen on seeds 100 to 149."""
+
+MOST_TRIES = 4096
+"""Weighed at once, however many places babbling draws."""
 
 
 class Focused:
@@ -67,7 +71,8 @@ class Focused:
         places: float,
         **remembering: float,
     ) -> None:
-        self._interest, self._exploratory, self._box, self._rng = interest, exploratory, box, rng
+        self._interest, self._exploratory, self._rng = interest, exploratory, rng
+        self._box = replace(box, draws=min(box.draws, MOST_TRIES))
         self._memory = Memory(len(exploratory), box, **remembering)
         self._dislike = places
         self._places, self._calls = np.empty((0, 2)), np.empty(0, dtype=np.intp)

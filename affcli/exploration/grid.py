@@ -46,7 +46,7 @@ class Grid:
     def cells(self, x: ArrayLike, y: ArrayLike) -> Cells:
         """Return the cells of places (in), of any shape; the nearest of those outside."""
         numbers = (
-            np.clip(np.floor((np.asarray(along) - first) / self.cell), 0, count - 1)
+            np.clip((np.asarray(along) - first) / self.cell, 0.0, count - 1.0)
             for along, first, count in zip((x, y), (self.left, self.near), self.shape, strict=True)
         )
         i, j = (number.astype(np.intp) for number in numbers)

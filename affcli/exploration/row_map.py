@@ -1,5 +1,6 @@
 """Where rows start, behavior by behavior: a try there gives no new row."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -9,12 +10,12 @@ from affcli.core.babbling_box import BabblingSettings
 from affcli.core.geometry import Point
 from affcli.exploration.grid import DIGITS, Grid, read, written
 
-MOST_CELLS = 40
-"""Along a side."""
+MOST_CELLS, LARGEST = 40, 50_000
+"""Cells along a side; and those of all behaviors, so that the state has room in a database."""
 MOST_ROWS = len(DIGITS) - 1
 """Of one behavior in one cell; more of them say nothing more."""
-HUNDRED = 100
-"""A row counts in so many parts, so that sums are exact in whatever order they are made."""
+WHOLE = 100
+"""A row counts as so many parts, so that sums are exact in whatever order they are made."""
 TAIL = 2.5
 """A row counts as far as so many standard deviations."""
 
@@ -30,12 +31,13 @@ class RowMap:
     """
 
     def __init__(self, behaviors: int, box: BabblingSettings, cell: float, near: float) -> None:
-        self.grid = Grid.about(box, 0.0, cell, MOST_CELLS)
+        most = max(1, min(MOST_CELLS, math.isqrt(LARGEST // behaviors)))
+        self.grid = Grid.about(box, 0.0, cell, most)
         self._rows = np.zeros((behaviors, *self.grid.shape), dtype=np.int64)
         self._nearby = np.zeros_like(self._rows)
         reach = int(TAIL * near / self.grid.cell)
         along = np.exp(-0.5 * (np.arange(-reach, reach + 1) * self.grid.cell / near) ** 2)
-        self._parts = np.rint(HUNDRED * along[:, None] * along).astype(np.int64)
+        self._parts = np.rint(WHOLE * along[:, None] * along).astype(np.int64)
 
     def add(self, call: int, place: Point) -> None:
         """Count a row of a behavior that starts with the attractor here to the wrist (in)."""
@@ -47,7 +49,7 @@ class RowMap:
         self, call: NDArray[np.intp], x: NDArray[np.float64], y: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Return how many rows of behaviors (n,) start near places (n,), (n,) (in)."""
-        counted: NDArray[np.float64] = self._nearby[(call, *self.grid.cells(x, y))] / HUNDRED
+        counted: NDArray[np.float64] = self._nearby[(call, *self.grid.cells(x, y))] / WHOLE
         return counted
 
     def state(self) -> list[list[str]]:

@@ -84,10 +84,19 @@ def curves_of(
             for cell, counts in summed(cells).items():
                 most = max(trials for trials, _ in counts.values())
                 panel = f"{cell.protocol}, of {most}"
-                sweeps[panel, most, name][place] = all_tried(counts)
+                own = sweeps[panel, most, name]
+                if place in own:
+                    raise UsageError(
+                        f"{condition.name}: another condition of the same line learned as long; "
+                        'give it a name that differs in more than "minutes=N"'
+                    )
+                own[place] = all_tried(counts)
         else:
             ends = [getattr(one, y)[-1] for one in courses[number].values()]
             sweeps["", 1.0 if y == "share" else math.inf, name][place] = ends
+    if not sweeps:
+        with_what = f"with {' or '.join(tools)}; name another tool" if tools else "yet"
+        raise UsageError(f"no trials {with_what}")
     lines = [
         swept_line(panel, name, own, most, course=by_end and len(own) > 1)
         for (panel, most, name), own in sweeps.items()

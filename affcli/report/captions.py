@@ -191,6 +191,23 @@ def conditions_words(what: str, conditions: Sequence[tuple[str, SessionInfo]]) -
     return Words(what, joined(*(condition_name(*one) for one in conditions)))
 
 
+def experiment_words(
+    what: str, name: str, conditions: Sequence[tuple[str, SessionInfo]], tools: Sequence[str]
+) -> Words:
+    """Return a title, and of which experiment and robots it is; the key names the conditions."""
+    sessions = [session for _, session in conditions]
+    spec, differences = sessions[0].spec, {differing(session.spec) for session in sessions}
+    return Words(
+        what,
+        joined(
+            f"experiment {name}, sessions {sessions[0].id} to {sessions[-1].id}",
+            f"{many(spec.robots, 'robot')}, seed {spec.seed}",
+            ", ".join(map(tool_words, tools)),
+            *(differences if len(differences) == 1 else ()),
+        ),
+    )
+
+
 def condition_name(name: str, session: SessionInfo) -> str:
     """Return a condition with what makes it: its session, robots, seed, what is not default."""
     caption = session_caption(session, session.spec.robots)

@@ -117,8 +117,13 @@ def test_its_conditions_are_compared_by_its_name(lived: Path, tmp_path: Path) ->
         ]
     assert "paper against rough" in done("compare", "two", "--against", "rough", "--db", lived).out
     assert "from the pairs of paper and rough" in done("power", "two", "--db", lived).out
-    for name in ("compare", "curve"):
+    for name in ("compare", "curve", "learning"):
         done("figure", name, "two", "--out", tmp_path / f"{name}.png", "--db", lived)
+    learning = ("figure", "learning", "two", "--out", tmp_path / "one.png", "--db", lived)
+    said = done(*learning, "--tool", "t-hook").err
+    assert said.startswith("Learning over robot time; experiment two, sessions 1 to 2; 2 robots, ")
+    assert "no trials with l-hook" in refused(2, *learning, "--tool", "l-hook", "--force")
+    assert "EXPERIMENT or --session" in refused(2, *learning, "--session", "1", "--force")
 
 
 def test_two_workers_make_the_database_that_one_makes(

@@ -21,7 +21,7 @@ from affcli.exploration.contact_map import MARGIN, PROBABILITY, ContactMap
 from affcli.exploration.focused import Focused
 from affcli.exploration.grid import Grid, read, written
 from affcli.exploration.random_babbling import RandomBabbling
-from affcli.exploration.row_map import MOST_ROWS, RowMap
+from affcli.exploration.row_map import LARGEST, MOST_ROWS, RowMap
 from affcli.testing import examples
 
 BOX = BabblingSettings()
@@ -123,6 +123,12 @@ def test_a_row_counts_near_its_start_and_for_its_own_behavior() -> None:
     assert near[0] == MOST_ROWS
     assert near[0] > near[1] > near[2] == 0.0
     assert not rows.near(np.zeros(3, dtype=np.intp), x, np.full(3, 12.2)).any()
+
+
+@pytest.mark.parametrize("behaviors", [1, 8, 300, 10_000])
+def test_the_rows_of_however_many_behaviors_have_room_in_a_database(behaviors: int) -> None:
+    rows = RowMap(behaviors, BOX, 0.1, 1.0)
+    assert behaviors * rows.grid.shape[0] * rows.grid.shape[1] <= LARGEST
 
 
 @pytest.mark.parametrize("broken", [[], ["01"], ["0", "12"], ["05", "10"], ["0 ", "10"], [1, 2]])

@@ -13,7 +13,7 @@ from affcli.lab.courses import curves_of
 from affcli.report.paired import comparison_tables
 from affcli.store import Store
 from affcli.store.columns import COLUMNS
-from affcli.store.tables import trial
+from affcli.store.tables import learning_run, trial
 from tests.store.conditions import SECOND, stored_conditions
 from tests.store.records import NOW, begun
 
@@ -177,6 +177,26 @@ def test_courses_follow_robots_over_minutes_or_rows(store: Store) -> None:
     lines = curves_of(store, conditions, "solved", "rows").lines
     assert [line.name for line in lines[::2]] == ["session 1", "session 2", "session 3"]
     assert [[point.x for point in line.points] for line in lines] == [[20.0]] * 6
+
+
+def test_conditions_that_differ_in_how_long_robots_learn_share_a_line(store: Store) -> None:
+    one, two, three = sessions_named(store, stored_conditions(store))
+    with store.database.writing() as connection:
+        longer = sa.update(learning_run).values(robot_seconds=learning_run.c.robot_seconds * 2.0)
+        connection.execute(longer.where(learning_run.c.session_id == two.session.id))
+    names = ("a, minutes=5", "a, minutes=10", "b, minutes=5")
+    conditions = [c._replace(name=n) for c, n in zip((one, two, three), names, strict=True)]
+    lines = curves_of(store, conditions, "solved", "minutes").lines
+    found = [(line.name, line.course, [point.x for point in line.points]) for line in lines[::2]]
+    assert found == [("a", True, [5.25, 10.5]), ("b", False, [5.25])]
+    (of_stick, *_) = curves_of(store, conditions, "solved", "minutes", ["stick"]).lines
+    assert of_stick.panel == f"{REACH}, of 2"
+    assert [point.mean for point in of_stick.points] == [1.5, 2.0]
+    again = [*conditions, three._replace(name="a, hours=1")]
+    with pytest.raises(UsageError, match=r"a, hours=1: .* learned as long"):
+        curves_of(store, again, "solved", "minutes")
+    with pytest.raises(UsageError, match="no trials with"):
+        curves_of(store, conditions, "solved", "minutes", ["l-hook"])
 
 
 def test_a_grid_has_a_line_for_each_condition_beside_the_sweep(store: Store) -> None:

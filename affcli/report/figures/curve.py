@@ -8,8 +8,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
 
 from affcli.analysis.courses import Line
+from affcli.errors import UsageError
 from affcli.report.figures.canvas import INK, ONE_COLUMN, PALE, canvas
 from affcli.report.figures.key import draw_key
 from affcli.report.figures.learning import COLORS, DASHES
@@ -18,10 +20,18 @@ BAND = 0.2
 """How dense a band is, from 0 to 1."""
 MARKS = ("o", "s", "^", "D", "v", "P")
 """Of conditions that are told apart."""
+MOST_NAMES = len(MARKS)
+"""More lines nobody tells apart."""
 MOST_MARKS = 12
 """On a line that is followed over time."""
 LOGARITHMIC = 8.0
 """A swept setting whose largest value is so many times its smallest has a logarithmic axis."""
+
+
+def require_few(lines: Sequence[Line]) -> None:
+    """Make sure that lines can be told apart; UsageError otherwise."""
+    if len({line.name for line in lines}) > MOST_NAMES:
+        raise UsageError(f"{MOST_NAMES} conditions fit; name fewer with --session")
 
 
 def curve_figure(lines: Sequence[Line], x: str, y: str, width: float | None = None) -> Figure:
@@ -42,6 +52,7 @@ def curve_figure(lines: Sequence[Line], x: str, y: str, width: float | None = No
                 draw = _draw_course if line.course else _draw_sweep
                 draw(axes, line, _look(line, names))
             _scale(axes, own)
+            axes.yaxis.set_major_locator(MaxNLocator(steps=[1, 2, 5, 10]))
             axes.set_title(panel, loc="left")
             axes.set_ylabel(y)
             axes.grid(axis="y", color=PALE, linewidth=0.5)
