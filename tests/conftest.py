@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -53,6 +54,16 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
                 for name, what in report.user_properties:
                     if name == DONE:
                         terminalreporter.line(f"{report.nodeid} ({report.duration:.0f} s): {what}")
+
+
+@pytest.fixture(scope="session")
+def furnished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with one of everything that commands read; each test works on a copy of its own."""
+    from tests.fuzz.places import furnish
+
+    folder = tmp_path_factory.mktemp("furnished")
+    furnish(folder)
+    return folder
 
 
 @pytest.fixture(scope="session")

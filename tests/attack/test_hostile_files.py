@@ -8,6 +8,7 @@ import zlib
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from pathlib import Path
+from typing import TypeVar
 
 import pytest
 from PIL import Image
@@ -144,6 +145,16 @@ READERS = (
 )
 
 
+T = TypeVar("T")
+EACH = 3
+"""Of each kind of file one in so many, the first among them, is tried but in `make torture`."""
+
+
+def some(files: dict[str, T], torture: bool) -> list[tuple[str, T]]:
+    """Return files with their names: all of them, or a few."""
+    return list(files.items())[:: 1 if torture else EACH]
+
+
 @pytest.fixture(scope="module")
 def program() -> Iterator[Forked]:
     held = Forked()
@@ -171,19 +182,20 @@ def suffered(program: Forked, folder: Path, *args: str) -> float:
 
 
 @pytest.mark.fault(42)
+@pytest.mark.torture
 def test_every_small_text_is_read_or_refused_in_little_memory(
-    program: Forked, known: Path, tell: Callable[[str], None]
+    program: Forked, known: Path, torture: bool, tell: Callable[[str], None]
 ) -> None:
     took = {}
     locate = ("camera", "locate", "view.png", "--calibration")
-    for name, text in SETTINGS.items():
+    for name, text in some(SETTINGS, torture):
         (known / "odd.toml").write_text(text)
         took[f"settings: {name}"] = suffered(program, known, "settings", "--config", "odd.toml")
-    for name, text in COLORS.items():
+    for name, text in some(COLORS, torture):
         (known / "odd.toml").write_text(text)
         colored = (*locate, "camera.json", "--colors", "odd.toml")
         took[f"colors: {name}"] = suffered(program, known, *colored)
-    for name, text in CALIBRATIONS.items():
+    for name, text in some(CALIBRATIONS, torture):
         (known / "odd.json").write_text(text)
         took[f"calibration: {name}"] = suffered(program, known, *locate, "odd.json")
     tell(slowest(took))
@@ -195,7 +207,7 @@ def test_every_small_picture_is_read_or_refused_in_little_memory(
     program: Forked, known: Path, torture: bool, tell: Callable[[str], None]
 ) -> None:
     took = {}
-    for name, made in PICTURES.items():
+    for name, made in some(PICTURES, torture):
         picture = made()
         assert len(picture) <= LARGEST_FILE, name
         (known / "odd.png").write_bytes(picture)
@@ -212,7 +224,7 @@ def test_every_small_database_is_read_or_refused_in_little_memory(
 ) -> None:
     took = {}
     database = known / "odd.db"
-    for name, (table, column, value) in MANY.items():
+    for name, (table, column, value) in some(MANY, torture):
         database.write_bytes((known / "small.db").read_bytes())
         with closing(sqlite3.connect(database)) as driver, driver:
             (kept,) = driver.execute(f"SELECT {column} FROM {table}").fetchone()

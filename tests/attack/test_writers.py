@@ -58,7 +58,7 @@ def write(program: Forked, home: Path, seed: int, wanted: int) -> tuple[int, flo
 def test_four_who_use_one_table_take_turns_and_every_trial_can_be_replayed(
     tmp_path: Path, torture: bool, tell: Callable[[str], None]
 ) -> None:
-    wanted, seed = (2000, time.time_ns() % 1_000_000) if torture else (24, 0)
+    wanted, seed = (2000, time.time_ns() % 1_000_000) if torture else (12, 0)
     (tmp_path / "few.toml").write_text("[trial]\nmax_steps = 12\n")
     learn = ("learn", "--tool", "t-hook", "--behaviors", "500", "--config", "few.toml")
     done(*learn, "--db", DATABASE, cwd=tmp_path)

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 
 from tests.cli.forked import Forked
 from tests.fuzz.budget import fuzz
-from tests.fuzz.places import furnish
 
 Fuzz = Callable[..., None]
 SECONDS = 30.0
@@ -24,13 +23,6 @@ def program() -> Iterator[Forked]:
     running = Forked(SECONDS, memory=MEMORY)
     yield running
     running.close()
-
-
-@pytest.fixture(scope="session")
-def furnished(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("furnished")
-    furnish(folder)
-    return folder
 
 
 @pytest.fixture

@@ -153,7 +153,7 @@ def test_every_file_of_settings_is_worked_with_or_refused(
         return () if takes_none else ("--db", "odd.db")
 
     cases = st.tuples(files, st.sampled_from(RUNS), st.sampled_from(AFTER))
-    fuzzing("files of settings", check, cases, few=60, share=0.25)
+    fuzzing("files of settings", check, cases, few=24, share=0.25)
 
 
 NO_DATABASE = {("figure", "workspace"), ("figure", "tools")}
@@ -216,7 +216,7 @@ def test_every_file_of_the_camera_is_worked_with_or_refused(
             ),
         ),
     )
-    fuzzing("files of the camera", check, cases, few=40, share=0.05)
+    fuzzing("files of the camera", check, cases, few=16, share=0.05)
 
 
 def altered(value: Any, which: int, by: str, leave_out: bool) -> str:

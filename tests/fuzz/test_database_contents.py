@@ -233,8 +233,8 @@ def emptied(home: Path) -> None:
 @pytest.mark.parametrize(
     ("kind", "changes", "few", "share"),
     [
-        ("cells", st.lists(cells, min_size=1, max_size=3), 60, 0.2),
-        ("structure", st.lists(structures | cells, min_size=1, max_size=2), 40, 0.05),
+        ("cells", st.lists(cells, min_size=1, max_size=3), 24, 0.2),
+        ("structure", st.lists(structures | cells, min_size=1, max_size=2), 16, 0.05),
     ],
     ids=["cells", "structure"],
 )
@@ -280,4 +280,4 @@ def test_every_flipped_bit_of_a_database_is_worked_with_or_refused(
 
     flips = st.tuples(shares | st.floats(0.0, 0.0003), st.integers(1, 255))
     cases = st.tuples(st.lists(flips, min_size=1, max_size=3), shares, commands_on_a_database())
-    fuzzing("databases: bits", check, cases, few=40, share=0.05)
+    fuzzing("databases: bits", check, cases, few=16, share=0.05)

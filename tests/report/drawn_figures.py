@@ -149,9 +149,9 @@ FIGURES: dict[str, "Callable[[float | None], Figure]"] = {
 
 
 def hashes() -> list[str]:
-    """Return one line a file: every figure as SVG, one of them in every format."""
+    """Return one line a file: every figure as SVG, a small one in every format."""
     files = [(name, ".svg") for name in FIGURES]
-    files += [("compared", ending) for ending in FORMATS if ending != ".svg"]
+    files += [("workspace", ending) for ending in FORMATS if ending != ".svg"]
     return [
         f"{name}{ending} {hashlib.sha256(encoded(FIGURES[name](None), ending)).hexdigest()}"
         for name, ending in files

@@ -17,7 +17,7 @@ from tests.cli.program import rows
 
 DATABASE = "my.db"
 """The database of every command here, in a folder of its own."""
-SETTINGS = "[motion]\nhold = 60.0\n[trial]\nmax_steps = 4\n"
+SETTINGS = "[motion]\nhold = 60.0\n[trial]\nmax_steps = 2\n"
 """An hour holds some thirty behaviors, and trials are given up soon."""
 EXPERIMENT = """
 [experiment]
@@ -98,9 +98,10 @@ USUAL |= {f"camera view {one}": "--step 1 --out out.png" for one in ("--run", "-
 USUAL |= {"camera view --after": "--trial {trial} --step 1 --out out.png"}
 USUAL |= {f"replay {one}": "{trial} --speed 100" for one in ("--gif", "--json")}
 """Given beside what is asked for, so that it ends soon or can be done at all."""
-NOT_ASKED = {"--force", "--update", "--frame", "--pattern", "--help", "--video"}
-"""Options that are given always, that write, or that leave out the database; and a film of what the
-camera sees, for which one trial is read as for a picture, and then a thousand pictures drawn."""
+NOT_ASKED = {"--force", "--update", "--frame", "--pattern", "--help", "--video", "--no-caption"}
+"""Options that are given always, that write, or that leave out the database or words; and a film of
+what the camera sees, for which one trial is read as for a picture, and then a thousand pictures
+drawn."""
 LATEST = {"--session": "session", "--trial": "trial", "--after-trial": "trial", "TRIAL": "trial"}
 LATEST |= {"--run": "learning_run", "--compare": "learning_run", "ID": "affordance"}
 """Which number is meant, of an option or, without one, by the word that stands for it."""
