@@ -11,6 +11,7 @@ from tests.cli.program import done
 
 CAMERA = {"cv2", "scipy", "PIL"}
 PICTURES = {"matplotlib", "jinja2", "pyarrow"}
+CLUSTER = {"distributed", "dask"}
 RUN = """\
 import sys
 from affcli.cli.main import main
@@ -53,6 +54,7 @@ def test_the_help_of_the_program_imports_nothing_heavy() -> None:
         "rich.table",
         *CAMERA,
         *PICTURES,
+        *CLUSTER,
     }
     for args in (("--help",), ("figure", "--help"), ("--version",)):
         assert not imported_by(*args) & heavy
@@ -60,9 +62,10 @@ def test_the_help_of_the_program_imports_nothing_heavy() -> None:
 
 def test_the_help_of_a_command_imports_no_engine_and_no_database() -> None:
     """Its module imports at the top; what is slow, or may be missing, waits for its first use."""
-    heavy = {"sqlalchemy", "pymunk", "alembic", *CAMERA, *PICTURES}
+    heavy = {"sqlalchemy", "pymunk", "alembic", *CAMERA, *PICTURES, *CLUSTER}
     for command in (
-        *(("learn",), ("solve",), ("replay",), ("report",), ("camera", "view")),
+        *(("learn",), ("solve",), ("replay",), ("report",), ("experiment",)),
+        ("camera", "view"),
         *(("table", "export"), ("figure", "row"), ("figure", "trial")),
     ):
         assert not imported_by(*command, "--help") & heavy

@@ -19,6 +19,7 @@ from typing import Any
 
 from camera_eye import bench_camera
 from comparing import bench_compare
+from many import bench_cluster, bench_memory, bench_writer
 from measuring import Scale
 from other_engines import bench_peers
 from pushing import bench_loop, bench_pushes
@@ -38,6 +39,9 @@ BENCHES: dict[str, Callable[[Scale], dict[str, Any]]] = {
     "compare": bench_compare,
     "camera": bench_camera,
     "workers": bench_workers,
+    "cluster": bench_cluster,
+    "memory": bench_memory,
+    "writer": bench_writer,
     "reproduce": bench_reproduce,
 }
 
