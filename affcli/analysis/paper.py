@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable
 from types import MappingProxyType
 from typing import TypeVar
 
-from affcli.core.behavior import GRASP
+from affcli.core.behavior import GRASP, BehaviorCall
 from affcli.core.results import SuccessCount
 from affcli.core.specs import (
     BROKEN_SHAPE,
@@ -105,24 +105,30 @@ def papers_breaking(spec: TrialSpec, learned: LearningSpec) -> bool:
     return papers_break(spec) and not other_parts(learned)
 
 
-def other_parts(spec: LearningSpec | SessionSpec) -> dict[str, str]:
+def other_parts(
+    spec: LearningSpec | SessionSpec, named: Callable[[BehaviorCall], str] = str
+) -> dict[str, str]:
     """Return the parts of a run that are not the paper's, as text by what they are.
 
     The sensor and the settings are not among them: the paper does not tell them in numbers.
+
+    Args:
+        spec: of the run.
+        named: how a behavior is written; the paper's eight as they write themselves.
     """
     parts = {}
-    behaviors = [str(one.call) for one in spec.repertoire]
+    behaviors = [named(one.call) for one in spec.repertoire]
     more = [f"+ {name}" for name in behaviors if name not in BEHAVIORS]
     less = [f"- {name}" for name in BEHAVIORS if name not in behaviors]
     if more or less:
         parts["behaviors"] = ", ".join(more + less)
     point = json.loads(spec.settings).get("tools.handle_below_grasp", _HANDLE_BELOW_GRASP)
     if (spec.binding.name, spec.binding.params) != (GRASP, (("grasp_point", point),)):
-        parts["binding"] = str(spec.binding)
-    named = {"world": (spec.world, WORLD), "explorer": (spec.explorer, EXPLORER)}
+        parts["binding"] = named(spec.binding)
+    others = {"world": (spec.world, WORLD), "explorer": (spec.explorer, EXPLORER)}
     if isinstance(spec, SessionSpec):
-        named["planner"] = (spec.planner, PLANNER)
+        others["planner"] = (spec.planner, PLANNER)
     # The version of ours does not matter.
     return parts | {
-        kind: str(part) for kind, (part, own) in named.items() if part.name != own or part.params
+        kind: str(part) for kind, (part, own) in others.items() if part.name != own or part.params
     }

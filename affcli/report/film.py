@@ -9,6 +9,7 @@ from affcli.core.task import GoalRegion
 from affcli.core.tool import ToolPart
 from affcli.core.workspace import TableSurface
 from affcli.errors import one_line
+from affcli.report.words import call_words
 
 COLUMNS = 4
 """Panels in a row: narrower ones leave no room for what stands over them."""
@@ -16,8 +17,8 @@ MOST_PANELS = 12
 """Of a trial of which no steps are named: three rows."""
 MOST_NAMED = 16
 """Steps that can be asked for at once: they fill a page."""
-LONGEST_BEHAVIOR = 20
-"""Letters of a behavior's name and distance; those of affcli have 17 at most."""
+LONGEST_BEHAVIOR = 32
+"""Letters of a behavior's name and distance; those of affcli have 32 at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,7 +139,7 @@ def take_title(take: Sequence[StoredStep]) -> str:
     """Return what stands over a panel: ``2-7  slide arm left 2, row 519``."""
     first, last = take[0], take[-1]
     numbers = str(last.number) if first is last else f"{first.number}-{last.number}"
-    plain = str(last.row.exploratory).encode("ascii", "backslashreplace").decode()
+    plain = call_words(last.row.exploratory).encode("ascii", "backslashreplace").decode()
     return f"{numbers}  {one_line(plain, LONGEST_BEHAVIOR)}, row {last.affordance_id}"
 
 

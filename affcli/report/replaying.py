@@ -134,7 +134,7 @@ def trial_frames(replay: Replay, number: int, *, braille: bool) -> Iterator[Fram
         braille: the terminal can show braille letters.
     """
     one, workspace = replay.steps[number - 1], replay.workspace
-    behavior = str(one.step.record.row.exploratory)
+    behavior = call_words(one.step.record.row.exploratory)
     title, (why, outcome) = step_title(replay, number), step_words(replay, one)
     path = [s.attractor.point for done in replay.steps[:number] for s in done.scenes]
     began = len(path) - len(one.scenes)
@@ -261,7 +261,7 @@ def behavior_words(behavior: ReplayedBehavior) -> list[str]:
         effect = f"moved {movement_words(seen.expected_movement)}: a row"
     x, y = record.start.wrist_to_object
     return [
-        str(record.execution.call),
+        call_words(record.execution.call),
         "",
         f"attractor at ({x:.1f}, {y:.1f}) from the wrist",
         effect,

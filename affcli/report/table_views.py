@@ -1,5 +1,6 @@
 """Affordance tables and rows as the figures show them: arrows over tools (Figs. 5 and 6)."""
 
+import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -7,11 +8,14 @@ from affcli.analysis.regions import parts_at
 from affcli.analysis.row_status import RowStatus, around_trial, compared, current
 from affcli.core.affordance import PROBABILITY_THRESHOLD, Affordance
 from affcli.core.behavior import BehaviorCall
+from affcli.core.geometry import Pose
+from affcli.core.motion import turned_by
 from affcli.core.records import LearningRunInfo, StoredRow, StoredStep, TrialInfo
 from affcli.core.tool import Tool, ToolPart, known_hold
 from affcli.report.captions import Words, joined, run_caption, trial_seed
 from affcli.report.figures.words import broken_words, tool_words
 from affcli.report.words import call_words, many, unknown_shapes
+from affcli.simulation.arm import free_turn
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,11 +51,13 @@ class RowView:
         tool: the tool it was learned with, as it was held (in, hand frame); without parts when its
             shape, or how it was held, is not known.
         puck_radius: of the attractor (in).
+        turned: by how much the behavior turned the wrist (rad).
     """
 
     row: Affordance
     tool: Tool
     puck_radius: float
+    turned: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +167,19 @@ def row_shown(stored: StoredRow, run: LearningRunInfo, puck_radius: float) -> tu
     words = Words(title, joined(run_caption(run), *left_out))
     hold = known_hold(row.binding)
     held = replace(tool, parts=()) if hold is None else tool.held(hold) if tool.parts else tool
-    return words, RowView(row, held, puck_radius)
+    return words, RowView(row, held, puck_radius, _turned(row, run))
+
+
+def _turned(row: Affordance, run: LearningRunInfo) -> float:
+    """Return by how much the behavior of a row turned the wrist (rad), at most to the roll's limit
+    where it was cut short.
+    """
+    motions = (one.motion for one in run.spec.repertoire if one.call == row.exploratory)
+    angle = turned_by(next(motions, ()))[-1]
+    if not row.truncated:
+        return angle
+    free = free_turn(Pose(*row.start.wrist, row.wrist_angle), angle)
+    return math.copysign(min(abs(angle), free), angle)
 
 
 def _shown(

@@ -145,9 +145,7 @@ def settings_words(settings: str) -> str:
 
 def parts_words(spec: LearningSpec | SessionSpec) -> str:
     """Return the parts of a run that are not the paper's, as ``binding grasp 3 15 deg``."""
-    parts = other_parts(spec)
-    if "binding" in parts:
-        parts["binding"] = call_words(spec.binding)
+    parts = other_parts(spec, call_words)
     return ", ".join(f"{kind} {one_line(text)}" for kind, text in parts.items())
 
 

@@ -19,6 +19,7 @@ from affcli.behaviors.moving import (
     paper_repertoire,
 )
 from affcli.behaviors.positioning import position_wrist, wrist_target
+from affcli.behaviors.turning import turn_and_pull, turn_and_slide, turn_wrist
 from affcli.core.behavior import (
     GRASP,
     POSITION_WRIST,
@@ -27,9 +28,10 @@ from affcli.core.behavior import (
     repertoire_json,
 )
 from affcli.core.geometry import Point, Pose
-from affcli.core.motion import Slide
+from affcli.core.motion import Slide, Turn
 from affcli.core.tool import Hold, hold_of
 from affcli.core.workspace import ToolGeometry
+from affcli.report.words import call_words
 from tests.factories import observation, places
 
 GEOMETRY = ToolGeometry()
@@ -110,3 +112,20 @@ def test_position_wrist_names_no_angle_when_it_is_0() -> None:
 def test_position_wrist_without_an_observation_is_refused() -> None:
     with pytest.raises(ValueError, match="observe first"):
         wrist_target(position_wrist(Point(0.0, 8.0)), None)
+
+
+def test_turning_behaviors_turn_and_then_slide_the_tool_at_the_angle() -> None:
+    """§7.1: "turn-the-wrist-at-an-angle-and-then-pull"."""
+    (turn,), (pull,) = turn_wrist(30.0), turn_and_pull(-60.0, 5.0)
+    (slide,) = turn_and_slide(45.0, 2.0, 180.0)
+    assert turn.motion == (Turn(30.0),)
+    assert pull.motion == (Turn(-60.0), Slide(0.0, -5.0))
+    assert slide.motion == (Turn(45.0), Slide(-2.0, 0.0))
+    names = [call_words(one.call) for one in (turn, pull, slide)]
+    assert names == [
+        "turn wrist 30 deg",
+        "turn and pull -60 deg 5",
+        "turn and slide 45 deg 2 180 deg",
+    ]
+    for one in (turn, pull, slide):
+        assert repertoire_from_json(repertoire_json((one,))) == (one,)

@@ -1,11 +1,13 @@
 """How well pictures tell where things are: the bars, and figures for what lies outside of them."""
 
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from affcli.core.geometry import Point
+from affcli.core.affordance_table import COLOR_TOLERANCE
+from affcli.core.geometry import Point, Pose
 from affcli.core.scene import Scene
 from affcli.errors import NotSeenError
 from affcli.lab.learning_run import LearningRun
@@ -110,6 +112,26 @@ def test_the_wrist() -> None:
     errors = [np.subtract(looked_at(look, k)[1], look.wrist.point) for k, look in enumerate(looks)]
     _, most = said("wrist", np.array(errors))
     assert most <= 0.05
+
+
+def test_puck_wrist_and_tool_wherever_the_wrist_is_turned() -> None:
+    """The wrist is found by its colour, whose edge the tool below blurs: by less when straight."""
+    rng, looks = np.random.default_rng(45), []
+    for k, look in enumerate(random_looks(200, *SQUARE)):
+        angle = float(rng.uniform(-np.pi, np.pi))
+        turned = replace(look, wrist=Pose(*look.wrist.point, angle))
+        if gap(turned) >= CLEAR:
+            looks.append((k, turned))
+    eye, puck, wrist = default_eye(), [], []
+    for k, look in looks:
+        seen = eye.segmenter.segment(eye.renderer.take(look, np.random.default_rng(k)))
+        puck.append(np.subtract(eye.locator.puck(seen)[0], look.attractor.point))
+        wrist.append(np.subtract(eye.locator.wrist(seen), look.wrist.point))
+        color = eye.locator.tool_color(seen)
+        assert np.linalg.norm(np.subtract(color, look.tool.color)) < COLOR_TOLERANCE
+    assert len(looks) > 150
+    assert said("turned: puck", np.array(puck))[1] <= 0.021
+    assert said("turned: wrist", np.array(wrist))[1] <= 0.05
 
 
 def test_the_goal_with_the_tool_across_it() -> None:

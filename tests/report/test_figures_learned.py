@@ -121,6 +121,17 @@ def test_a_row_of_a_turned_wrist_is_drawn_with_the_tool_turned() -> None:
     assert right_edge(before) == pytest.approx(ahead)
 
 
+def test_a_row_that_turns_the_wrist_ends_with_the_tool_turned() -> None:
+    row = replace(drawn.table()[3], wrist_angle=0.0)
+    ends = [
+        right_edge([axes for axes in figure.axes if circles(axes)][1])
+        for figure in (row_figure(RowView(row, T_HOOK, 1.5, -turn)) for turn in (0.0, math.pi / 2))
+    ]
+    ahead = max(y for part in T_HOOK.parts for _, y in part.outline.vertices)
+    assert ends[1] == pytest.approx(ahead)
+    assert ends[0] < ends[1]
+
+
 def test_the_workspace_shows_goals_starts_tool_and_reach() -> None:
     figure = workspace_figure(WORKSPACE, T_HOOK, REACH, TASKS)
     (axes,) = figure.axes

@@ -18,6 +18,7 @@ from affcli.core.workspace import Workspace
 from affcli.report.figures.canvas import FAINT, INK, ORANGE, canvas
 from affcli.report.figures.things import draw_goal, draw_table, goal_label
 from affcli.report.replaying import step_title
+from affcli.report.words import call_words
 
 Picture = NDArray[np.uint8]
 """Rows x columns x red, green, blue."""
@@ -141,7 +142,7 @@ def pictures_of(replay: Replay, numbers: Iterable[int], every: int = 1) -> Itera
 def _line(one: ReplayedStep, frame: int) -> str:
     """Return in words what a frame of a step shows; the last one, what came of the step."""
     record = one.step.record
-    what = "position wrist" if frame < one.placed else str(record.row.exploratory)
+    what = "position wrist" if frame < one.placed else call_words(record.row.exploratory)
     if frame + 1 == len(one.scenes):
         what = "replicated" if record.replicated else "not replicated"
         what += ", row excluded" if record.died else ""

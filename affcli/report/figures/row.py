@@ -45,7 +45,7 @@ def row_figure(view: RowView, width: float | None = None) -> Figure:
 
     Tool and attractor are drawn where the observations put them, from where the wrist was at the
     start; the wrist is at the attractor less its place from the wrist, and turned as it was when
-    the exploratory behavior began. All drawings have one scale.
+    the exploratory behavior began and ended. All drawings have one scale.
 
     Args:
         view: the row.
@@ -102,7 +102,8 @@ def _draw_end(axes: Axes, view: RowView) -> None:
     ended = Point(x - wrist.x, y - wrist.y)
     draw_parts(axes, view.tool.parts, Pose(0.0, 0.0, row.wrist_angle), missing=True)
     draw_puck(axes, began, view.puck_radius, before=True)
-    _draw_tool(axes, view, Pose(moved.x - wrist.x, moved.y - wrist.y, row.wrist_angle))
+    angle = row.wrist_angle + view.turned
+    _draw_tool(axes, view, Pose(moved.x - wrist.x, moved.y - wrist.y, angle))
     draw_puck(axes, ended, view.puck_radius)
     draw_arrows(axes, [(began, ended)], MOVED, head=1.2)
 
