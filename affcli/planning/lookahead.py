@@ -101,7 +101,8 @@ class Lookahead:
         search, reasons = self._searched(situation)
         first = search.first_rows(1 + CLOSE)
         if not len(first):
-            return Choice(None, reasons)
+            # Of the rows within reach none should do anything: that is why there is no plan.
+            return Choice(None, (*reasons, Reason("expected to move the attractor", 0)))
         plans = [search.plan(int(row)) for row in first]
         told = [_told(*plan, followed=not number) for number, plan in enumerate(plans)]
         return Choice(int(first[0]), (*reasons, *told))
