@@ -9,6 +9,7 @@ import pkgutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache, partial
 from importlib import import_module
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
@@ -29,17 +30,17 @@ if TYPE_CHECKING:
 
 KINDS: tuple[Kind, ...] = get_args(Kind)
 
-ROOMS: Mapping[Kind, str] = {
-    "tools": "affcli.simulation.tools",
-    "bindings": "affcli.behaviors",
-    "behaviors": "affcli.behaviors",
-    "explorers": "affcli.exploration",
-    "planners": "affcli.planning",
-    "sensors": "affcli.simulation.sensing",
-    "tasks": "affcli.simulation.tasks",
-    "worlds": "affcli.simulation.worlds",
+ROOMS: Mapping[Kind, tuple[str, ...]] = {
+    "tools": ("affcli.simulation.tools",),
+    "bindings": ("affcli.behaviors",),
+    "behaviors": ("affcli.behaviors",),
+    "explorers": ("affcli.exploration",),
+    "planners": ("affcli.planning", "affcli.baselines"),
+    "sensors": ("affcli.simulation.sensing",),
+    "tasks": ("affcli.simulation.tasks",),
+    "worlds": ("affcli.simulation.worlds",),
 }
-"""Where the parts of each kind live: a package, whose files are looked through, or one file."""
+"""Where the parts of each kind live: packages, whose files are looked through, or single files."""
 
 DEFAULTS: Mapping[str, str] = {
     "binding": "grasp",
@@ -63,7 +64,7 @@ REMEDY = "install what made the record"
 def parts(kind: Kind) -> Mapping[str, Part]:
     """Return the parts of a kind by name, in the order in which their files name them."""
     named: dict[str, Part] = {}
-    for module in _modules(ROOMS[kind]):
+    for module in chain.from_iterable(map(_modules, ROOMS[kind])):
         for found in getattr(module, "PARTS", ()):
             if found.kind == kind and named.setdefault(found.name, found) is not found:
                 raise BadInputError(f"two {kind} are named {found.name}; rename one")

@@ -27,6 +27,7 @@ class Part:
             sensor it is only named here: `simulation.sensing` makes the three that there are.)
         params: its parameters by name.
         version: raised when the same parameters give other results.
+        told: it is told what no robot sees, and stands beside robots to be compared with them.
     """
 
     kind: Kind
@@ -36,6 +37,7 @@ class Part:
     build: Callable[..., Any]
     params: Mapping[str, Setting] = field(default_factory=dict)
     version: int = 1
+    told: bool = False
 
     def checked(self, given: Mapping[str, Value]) -> dict[str, Value]:
         """Return parameters that someone gave, each in the one form that equal values have.

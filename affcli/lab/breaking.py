@@ -8,6 +8,7 @@ from affcli.core.observation import SensorKind
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import Protocol, TrialRecord
 from affcli.core.tool import Tool
+from affcli.lab.believing import require_own
 from affcli.lab.run_parts import tasks_of, world_of
 from affcli.lab.solving import session_spec
 from affcli.lab.trials import trial_specs, whole_trial
@@ -63,6 +64,7 @@ def break_tool(
     ]
     first = planned[0][0][0]
     # A planner or a camera that is not there is found before anything is recorded.
+    require_own(planner)
     registry.planner(planner)
     _ = world.trial(first, learned).calibration
     spec = session_spec("break-tool", run, first)

@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import Any
 
 from affcli import registry
+from affcli.baselines.planners import ORACLE
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.identity import Component, key_of
 from affcli.core.specs import (
@@ -25,6 +26,7 @@ from affcli.core.specs import (
     TrialRecord,
 )
 from affcli.core.world import World
+from affcli.lab.believing import TOLD, ToldRun, is_told, told_spec
 from affcli.lab.learning_run import LearningRun
 from affcli.lab.run_parts import RunParts, settings_of, tasks_of, world_of
 from affcli.lab.trials import trial_specs, whole_trial
@@ -64,6 +66,31 @@ class Condition:
         sets = [one for one in self.tasks if one != ADAPTATION] or [ADAPTATION_TASKS]
         own = (kind, seed, robots, self.planner, ", ".join(sets))
         return SessionSpec(*own, **self.parts.carried())
+
+    def tables(self, seed: int, robot: int) -> Iterator[LearningSpec]:
+        """Yield what the tables of a robot are functions of: learned with each tool; told, where
+        the planner is no robot's own.
+        """
+        for tool in self.tools:
+            spec = self.parts.spec(tool, seed, robot, self.hours)
+            if not is_told(self.planner):
+                yield spec
+                continue
+            whole = told_spec(spec, self.planner)
+            yield whole
+            if tool == BROKEN_TOOL and ADAPTATION in self.tasks:
+                broken = told_spec(spec, self.planner, self.parts.tool(BROKEN_SHAPE))
+                if broken != whole:
+                    yield broken
+
+    def uses(self, spec: LearningSpec, task_set: str) -> bool:
+        """Tell whether tasks of a set start from a table: what one knows of a tool that broke is of
+        no use with the whole tool, and the other way round.
+        """
+        if self.planner.name != ORACLE or spec.tool != BROKEN_TOOL:
+            return True
+        whole = spec.held.parts == self.parts.tool(BROKEN_TOOL).parts
+        return whole != (task_set == ADAPTATION)
 
     def canonical(self) -> dict[str, Any]:
         """Return all that lives under it are functions of, beside seed and robot, as JSON types."""
@@ -109,8 +136,7 @@ class Experiment:
         """Return what a robot learns, each once, with the conditions that use it."""
         uses: dict[str, tuple[LearningSpec, list[int]]] = {}
         for number, condition in enumerate(self.conditions):
-            for tool in condition.tools:
-                spec = condition.parts.spec(tool, self.seed, robot, condition.hours)
+            for spec in condition.tables(self.seed, robot):
                 uses.setdefault(spec.key, (spec, []))[1].append(number)
         return list(uses.values())
 
@@ -119,10 +145,10 @@ class _Learned:
     """A learning run with what trials need of it."""
 
     def __init__(self, spec: LearningSpec) -> None:
-        run = LearningRun(spec)
+        run = ToldRun(spec) if spec.explorer.name == TOLD else LearningRun(spec)
         self.spec = spec
         self.steps: tuple[LearningStep, ...] = tuple(run.steps())
-        self.seconds = run.setting.robot.clock
+        self.seconds = run.seconds
         self.calibration = run.calibration
         rows = (record.affordance for record, _ in self.steps)
         self.table = AffordanceTable(row for row in rows if row is not None)
@@ -130,15 +156,11 @@ class _Learned:
     def trials(self, condition: Condition) -> Iterator[TrialRecord]:
         """Yield the trials of a condition that start from this run's table."""
         spec, world = self.spec, world_of(self.spec)
-        for tasks in condition.tasks:
-            if tasks != ADAPTATION:
+        for named in (one for one in condition.tasks if condition.uses(spec, one)):
+            tasks = tasks_of(world, ADAPTATION_TASKS if named == ADAPTATION else named, spec.seed)
+            if named != ADAPTATION:
                 for trial in trial_specs(
-                    *(
-                        Protocol.EXTENSION_OF_REACH,
-                        spec,
-                        spec.held,
-                        tasks_of(world, tasks, spec.seed),
-                    ),
+                    *(Protocol.EXTENSION_OF_REACH, spec, spec.held, tasks),
                     *(spec.seed, spec.sensor, condition.planner, world),
                 ):
                     yield whole_trial(trial, spec, self.table, world)
@@ -146,12 +168,7 @@ class _Learned:
                 left = condition.parts.tool(BROKEN_SHAPE)
                 lost = world.lost_rows(spec, left, self._row_starts())
                 for trial in trial_specs(
-                    *(
-                        Protocol.TOOL_ADAPTATION,
-                        spec,
-                        left,
-                        tasks_of(world, ADAPTATION_TASKS, spec.seed),
-                    ),
+                    *(Protocol.TOOL_ADAPTATION, spec, left, tasks),
                     *(spec.seed, spec.sensor, condition.planner, world),
                 ):
                     yield whole_trial(trial, spec, self.table, world, lost)

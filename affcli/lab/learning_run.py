@@ -63,6 +63,11 @@ class LearningRun:
         return self._state.step
 
     @property
+    def seconds(self) -> float:
+        """Robot seconds since it began."""
+        return self.setting.robot.clock
+
+    @property
     def done(self) -> bool:
         """Whether the time or the number of behaviors is up."""
         if self.spec.behaviors is not None:

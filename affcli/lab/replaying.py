@@ -19,6 +19,7 @@ from affcli.core.specs import Counters
 from affcli.core.trial import TrialStep
 from affcli.core.world import Setting, World
 from affcli.errors import UsageError
+from affcli.lab.believing import TOLD
 from affcli.lab.filming import FRAME_RATE, Reel
 from affcli.lab.learning_run import LearningRun
 from affcli.lab.run_parts import require_shape, require_world_version, settings_of, world_of
@@ -166,6 +167,8 @@ def replay_run(
     Raises:
         UsageError, BadInputError, DatabaseError: as `replay_trial`.
     """
+    if run.spec.explorer.name == TOLD:
+        raise UsageError(f"run {run.id} is no robot's: its table was computed, nothing was done")
     learning = LearningRun(run.spec)
     _require_replays(learning.world)
     setting, reel = learning.setting, Reel()

@@ -12,6 +12,7 @@ from affcli.core.specs import Counters, Protocol, SessionSpec, TrialSpec
 from affcli.core.task import ALL_STARTS, Task
 from affcli.core.trial import Outcome, StepRecord, TrialEnd
 from affcli.core.world import World
+from affcli.lab.believing import require_own
 from affcli.lab.run_parts import tasks_of, world_of
 from affcli.lab.trials import trial_specs, whole_trial
 from affcli.lab.versions import versions
@@ -107,6 +108,7 @@ def solve(
         UsageError: there are no such tasks.
         BadInputError: a part that this affcli lacks.
     """
+    require_own(planner)
     registry.planner(planner)
     planned = []
     for run in runs:

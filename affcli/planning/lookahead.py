@@ -86,6 +86,7 @@ class Lookahead:
         threshold, angle_degrees: as in `NestedQuery`.
         smoothing: how far neighbours lie whose movements are averaged with a row's own (in); 0 for
             none.
+        certain: every row is taken to do what it did, whatever its counters say.
     """
 
     depth: int = 2
@@ -93,13 +94,15 @@ class Lookahead:
     threshold: float = PROBABILITY_THRESHOLD
     angle_degrees: float = REPLICATION_ANGLE_DEGREES
     smoothing: float = 0.0
+    certain: bool = False
 
     def choose(self, situation: Situation) -> Choice:
         """Return the first row of the best path, with the path and those that came close."""
         search, reasons = self._searched(situation)
         first = search.first_rows(1 + CLOSE)
         if not len(first):
-            return Choice(None, reasons)
+            # Of the rows within reach none should do anything: that is why there is no plan.
+            return Choice(None, (*reasons, Reason("expected to move the attractor", 0)))
         plans = [search.plan(int(row)) for row in first]
         told = [_told(*plan, followed=not number) for number, plan in enumerate(plans)]
         return Choice(int(first[0]), (*reasons, *told))
@@ -118,7 +121,10 @@ class Lookahead:
         probable, _, reasons = usable_rows(situation, self.threshold)
         table = situation.table
         model = smoothed(table, self.smoothing) if self.smoothing > 0.0 else RowModel.of(table)
-        return _Search(situation, model, probable, self.depth, self.beam), reasons
+        steps = np.ones(len(table))
+        if not self.certain:
+            steps = table.times_used / np.maximum(table.times_successful, 1)
+        return _Search(situation, model, probable, steps, self.depth, self.beam), reasons
 
 
 class _Search:
@@ -128,16 +134,23 @@ class _Search:
         situation: where the robot stands.
         model: what rows do.
         rows: those that may be used, by their positions in the table.
+        steps: how often each row of the table is expected to be tried until it does so (n,).
         depth, beam: as in `Lookahead`.
     """
 
     def __init__(
-        self, situation: Situation, model: RowModel, rows: Rows, depth: int, beam: int
+        self,
+        situation: Situation,
+        model: RowModel,
+        rows: Rows,
+        steps: Floats,
+        depth: int,
+        beam: int,
     ) -> None:
         self._situation, self._model, self._rows = situation, model, rows
         self._few = model.thinned(rows, MOST_ROWS)
         table, seen, wrist = situation.table, situation.seen, situation.wrist
-        self._steps = table.times_used / np.maximum(table.times_successful, 1)
+        self._steps = steps
         dx = table.offset_x - (seen.object_x - wrist.x)
         dy = table.offset_y - (seen.object_y - wrist.y)
         self._carried = REPOSITIONING * np.hypot(dx, dy)

@@ -23,7 +23,7 @@ from many import bench_cluster, bench_memory, bench_writer
 from measuring import Scale
 from other_engines import bench_peers
 from pushing import bench_loop, bench_pushes
-from row_choice import bench_query
+from row_choice import bench_planning, bench_query
 from storing import bench_growth, bench_hours, bench_storing
 from whole_commands import bench_learn, bench_reproduce, bench_workers
 
@@ -32,6 +32,7 @@ BENCHES: dict[str, Callable[[Scale], dict[str, Any]]] = {
     "loop": bench_loop,
     "peers": bench_peers,
     "query": bench_query,
+    "planning": bench_planning,
     "storing": bench_storing,
     "hours": bench_hours,
     "growth": bench_growth,

@@ -4,6 +4,7 @@ import math
 import statistics
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ import sqlalchemy as sa
 from measuring import Scale, bar, verdict
 from workload import SETTINGS
 
-from affcli.behaviors.moving import EXTEND_ARM
+from affcli.behaviors.moving import EXTEND_ARM, paper_repertoire
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import COLOR_TOLERANCE, AffordanceTable
 from affcli.core.behavior import GRASP, BehaviorCall
@@ -19,14 +20,20 @@ from affcli.core.choice import Situation
 from affcli.core.geometry import Point
 from affcli.core.observation import Observation
 from affcli.core.task import GoalRegion
+from affcli.planning.lookahead import Lookahead
 from affcli.planning.nested_query import NestedQuery
 from affcli.simulation.robot import SimulatedRobot
 from affcli.simulation.table import Table
 
 BARS = {1_000: 0.05, 100_000: 0.5, 1_000_000: 10.0}
 """Milliseconds by number of rows."""
+AHEAD_BARS = {160: 5.0, 10_000: 100.0}
+"""Milliseconds by number of rows, of choosing two moves ahead."""
 AGAINST_SQL, TIMES_AS_FAST = 100_000, 100.0
 GOAL = GoalRegion("1", Point(0.0, 15.0), 2.4)
+FAR = GoalRegion("2", Point(-12.4, 22.4), 0.25)
+PLACES = ((Point(3.0, 22.4), GOAL), (Point(9.0, 22.4), FAR), (Point(-9.0, 26.0), FAR))
+"""Of the attractor, and the goal."""
 COLORS = (240.0, 120.0, 20.0, 40.0, 160.0, 70.0)
 
 
@@ -60,6 +67,55 @@ def bench_query(scale: Scale) -> dict[str, Any]:
         f"({against['ms']:.0f} ms, the same row; {verdict(against)})"
     )
     return {"ms": figures, "bars": bars, "against_sql": against}
+
+
+def bench_planning(scale: Scale) -> dict[str, Any]:
+    """Choosing a row two moves ahead, in milliseconds: to a goal that is near, and the slower of
+    two that are far, from tables of a robot's hour and of many.
+    """
+    robot = SimulatedRobot(Table(SETTINGS.workspace, SETTINGS.physics), ())
+    planner = Lookahead(depth=2)
+    figures, bars = {}, {}
+    for rows, most in AHEAD_BARS.items():
+        table = moving_table(scale.of(rows, 50))
+        each = []
+        for at, goal in (
+            (Point(3.0, 22.4), GOAL),
+            (Point(9.0, 22.4), FAR),
+            (Point(-9.0, 26.0), FAR),
+        ):
+            seen = Observation(*at, 0.0, 0.0, 12.0, 0.0, *COLORS)
+            here = Situation(table, seen, goal, robot.wrist, robot.reaches)
+            planner.choose(here)  # what is made once of a table is not counted
+            each.append(median_ms(partial(planner.choose, here), scale.of(20, 2)))
+        figures[rows] = max(each)
+        bars[rows] = bar(figures[rows], most=most)
+    words = ", ".join(
+        f"{rows:,} rows {ms:.1f} ms ({verdict(bars[rows], ' ms', least=False)})"
+        for rows, ms in figures.items()
+    )
+    print(f"planning: choosing a row two moves ahead, the slowest of three places: {words}")
+    return {"ms": figures, "bars": bars}
+
+
+def moving_table(rows: int) -> AffordanceTable:
+    """Return a table of random rows of the paper's repertoire, each moving the attractor about as
+    its wrist goes.
+    """
+    rng = np.random.default_rng(1)
+    binding = BehaviorCall.of(GRASP, {"grasp_point": 1.0})
+    calls = [(one.call, one.motion[0]) for one in paper_repertoire()]
+    made = []
+    for i, numbers in enumerate(rng.random((rows, 6)).tolist()):
+        call, slide = calls[i % len(calls)]
+        start, _ = observations(numbers)
+        turn, share = 0.8 * numbers[4] - 0.4, 0.3 + 0.7 * numbers[5]
+        dx = share * (slide.dx * math.cos(turn) - slide.dy * math.sin(turn))
+        dy = share * (slide.dx * math.sin(turn) + slide.dy * math.cos(turn))
+        end = start._replace(object_x=start.object_x + dx, object_y=start.object_y + dy)
+        travel = Point(slide.dx, slide.dy)
+        made.append(Affordance(i, binding, call, start, end, travel=travel))
+    return AffordanceTable(made)
 
 
 def against_sql(

@@ -1,0 +1,85 @@
+"""Baselines in the place of robots: what they are told, as tables that trials start from."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from affcli import registry
+from affcli.baselines.beliefs.pushes import Belief, pushes
+from affcli.baselines.planners import ORACLE
+from affcli.core.identity import Component
+from affcli.core.specs import LearningSpec, LearningStep
+from affcli.core.tool import Tool
+from affcli.errors import UsageError
+from affcli.lab.run_parts import settings_of
+
+TOLD = "told"
+"""In the place of an explorer: nothing was explored, the table was computed."""
+
+
+def is_told(planner: Component) -> bool:
+    """Tell whether a planner is no robot's own: it is told what no robot sees."""
+    return registry.recorded("planners", planner).told
+
+
+def require_own(planner: Component) -> None:
+    """Refuse a planner that is no robot's own where a robot uses what it learned."""
+    if is_told(planner):
+        raise UsageError(
+            f"{planner.name} is no robot's own: it plans on pushes that it is told, not on a table "
+            "that was learned; name it in an experiment (affcli experiment)"
+        )
+
+
+def told_spec(learned: LearningSpec, planner: Component, held: Tool | None = None) -> LearningSpec:
+    """Return what the table of a baseline is a function of.
+
+    Args:
+        learned: the learning run in whose place it stands.
+        planner: which baseline.
+        held: the tool that is truly held, which the oracle knows; None where it did not break.
+    """
+    believed = learned.held
+    if held is not None and planner.name == ORACLE:
+        # Under the name and the colour by which the robot would know it.
+        believed = replace(held.painted(learned.held.color), name=learned.held.name)
+    spacing, friction = _told(planner)
+    explorer = Component.of(TOLD, {"spacing": spacing, "friction": friction})
+    told = replace(learned, held=believed, explorer=explorer, hours=None, behaviors=1)
+    return replace(told, behaviors=len(pushes(_belief(told))))
+
+
+class ToldRun:
+    """The table of a baseline in the form of a learning run; it takes no robot time.
+
+    Args:
+        spec: what `told_spec` gave.
+
+    Attributes:
+        calibration: none: nothing was seen.
+        seconds: robot seconds that it took.
+    """
+
+    calibration = None
+    seconds = 0.0
+
+    def __init__(self, spec: LearningSpec) -> None:
+        self._spec = spec
+
+    def steps(self) -> Iterator[LearningStep]:
+        """Yield each push that is believed to move the attractor."""
+        yield from pushes(_belief(self._spec))
+
+
+def _belief(spec: LearningSpec) -> Belief:
+    settings, told = settings_of(spec), dict(spec.explorer.params)
+    belief = Belief(
+        *(spec.held, spec.binding, spec.repertoire, settings.workspace, settings.physics),
+        *(settings.babbling, float(told["spacing"])),
+    )
+    return belief.with_friction(float(told["friction"]))
+
+
+def _told(planner: Component) -> tuple[float, float]:
+    """Return spacing and friction of the pushes that a baseline is told."""
+    values = registry.recorded("planners", planner).values(planner)
+    return float(values["spacing"]), float(values["friction"])

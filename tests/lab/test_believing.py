@@ -1,0 +1,141 @@
+"""Baselines: what they are told, what they never see, and their trials beside those of robots."""
+
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from affcli import registry
+from affcli.baselines.beliefs.pushes import pushes
+from affcli.core.change_detection import MOVEMENT_THRESHOLD
+from affcli.core.geometry import Point, near_any
+from affcli.core.specs import Protocol, RobotRecord
+from affcli.errors import BadInputError, UsageError
+from affcli.lab.believing import _belief, is_told, require_own, told_spec
+from affcli.lab.definition import experiment_file
+from affcli.lab.experiment import one_robot
+from affcli.simulation.pushing import PushSimulator
+from affcli.simulation.wrist_motion import trapezoid
+from tests.factories import learning_spec, tool_named
+
+COARSE = "spacing=2"
+LEARNED = learning_spec("t-hook")
+
+
+FILE = f"""
+[experiment]
+name = "small"
+robots = 1
+seed = 5
+[base]
+tools = ["t-hook"]
+tasks = ["adaptation"]
+minutes = 2
+[[condition]]
+name = "robot"
+planner = "one-step"
+[[condition]]
+name = "static"
+planner = "push-planner:counters=0,{COARSE}"
+[[condition]]
+name = "oracle"
+planner = "oracle:{COARSE}"
+"""
+
+
+@pytest.fixture(scope="module")
+def life(tmp_path_factory: pytest.TempPathFactory) -> RobotRecord:
+    path = tmp_path_factory.mktemp("small") / "small.toml"
+    path.write_text(FILE)
+    return one_robot(experiment_file(path), 0)
+
+
+def test_each_push_that_is_told_is_what_the_physics_gives() -> None:
+    spec = told_spec(LEARNED, registry.component("planners", f"oracle:{COARSE}"))
+    belief = _belief(spec)
+    outlines, place = spec.held.outlines, belief.workspace
+    simulator = PushSimulator(outlines, place.puck, place.friction, belief.physics)
+    steps = pushes(belief)
+    assert len(steps) == spec.behaviors
+    for record, truth in steps[::7]:
+        row = record.affordance
+        assert row is not None
+        assert truth is not None
+        length = float(np.hypot(*row.travel))
+        direction = Point(row.travel.x / length, row.travel.y / length)
+        motion = trapezoid(length, place.motion.push_speed, place.motion.push_acceleration)
+        after = simulator.push(truth.start, Point(0.0, 0.0), direction, motion)
+        assert after == truth.end
+        assert row.expected_movement.distance > MOVEMENT_THRESHOLD
+        assert not near_any(outlines, row.start.wrist_to_object, place.puck.radius)
+
+
+def test_the_oracle_knows_the_tool_that_is_left_and_the_push_planner_believes_the_old_one() -> None:
+    left = tool_named("l-hook")
+    oracle, planner = (
+        told_spec(LEARNED, registry.component("planners", f"{name}:{COARSE}"), left)
+        for name in ("oracle", "push-planner")
+    )
+    assert oracle.held.outlines == left.outlines
+    assert (oracle.tool, oracle.held.color) == (LEARNED.tool, LEARNED.held.color)
+    assert planner.held == LEARNED.held
+    assert planner == told_spec(LEARNED, registry.component("planners", f"push-planner:{COARSE}"))
+
+
+def test_what_is_believed_of_friction_changes_the_pushes() -> None:
+    plain, rough = (
+        pushes(_belief(told_spec(LEARNED, registry.component("planners", text))))
+        for text in (f"push-planner:{COARSE}", f"push-planner:{COARSE},friction=0.9")
+    )
+    assert plain != rough
+
+
+def test_only_straight_slides_are_known() -> None:
+    behavior = replace(LEARNED.repertoire[0], motion=())
+    spec = replace(LEARNED, repertoire=(behavior,))
+    with pytest.raises(BadInputError, match="is no straight slide"):
+        told_spec(spec, registry.component("planners", f"oracle:{COARSE}"))
+
+
+def test_a_robot_has_no_use_for_a_planner_that_is_told() -> None:
+    for name, part in registry.parts("planners").items():
+        planner = registry.component("planners", name)
+        assert is_told(planner) is part.told is ("no robot's own" in part.summary)
+        if part.told:
+            with pytest.raises(UsageError, match="no robot's own"):
+                require_own(planner)
+
+
+def test_baselines_do_the_trials_of_the_robot_from_tables_of_their_own(life: RobotRecord) -> None:
+    assert [str(spec.explorer.name) for spec, _, _ in life.learned] == ["random", "told", "told"]
+    assert [seconds for _, _, seconds in life.learned[1:]] == [0.0, 0.0]
+    count = Counter((one.condition, one.run) for one in life.tested)
+    assert count == {(0, 0): 16, (1, 1): 16, (2, 2): 16}
+    for one in life.tested:
+        spec = one.trial.spec
+        assert (spec.protocol, spec.tool, spec.shape) == (
+            Protocol.TOOL_ADAPTATION,
+            "t-hook",
+            "l-hook",
+        )
+
+
+def test_who_believes_in_the_whole_tool_repeats_itself_and_the_oracle_does_not(
+    life: RobotRecord,
+) -> None:
+    """§8: the table is to "excel in situations that cannot be predicted by the planners"."""
+    tries = Counter[tuple[int, int]]()
+    for one in life.tested:
+        rows = Counter(step.record.row.step for step in one.trial.steps)
+        for number, uses in rows.items():
+            tries[one.condition, number] = max(tries[one.condition, number], uses)
+    most = {k: max(uses for (c, _), uses in tries.items() if c == k) for k in (0, 1, 2)}
+    assert most[1] > 20 > most[2]
+
+
+def test_an_experiment_with_a_baseline_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "small.toml"
+    path.write_text(FILE)
+    assert len(experiment_file(path).learning(0)) == 3
