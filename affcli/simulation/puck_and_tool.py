@@ -31,6 +31,7 @@ class PuckAndTool:
         puck: the puck.
         friction: all coefficients.
         settings: how finely to solve.
+        straight: as for `surface_friction`.
 
     Attributes:
         step: advances everything by a time (s).
@@ -48,6 +49,8 @@ class PuckAndTool:
         puck: PuckGeometry,
         friction: SurfaceFriction,
         settings: PhysicsSettings,
+        *,
+        straight: bool,
     ) -> None:
         space = pymunk.Space()
         space.iterations = settings.iterations
@@ -73,7 +76,7 @@ class PuckAndTool:
             # The engine multiplies the two coefficients of a contact.
             part.friction = friction.tool_puck
             space.add(part)
-        joints = surface_friction(table, body, puck, friction)
+        joints = surface_friction(table, body, puck, friction, straight=straight)
         space.add(*joints)
         self._owned = (space, body, rim, tool, table, joints)  # the engine does not keep them alive
         # A space that is freed goes over what is in it, and the program is aborted when garbage is

@@ -22,7 +22,12 @@ distance of a disc's points from its centre."""
 
 
 def surface_friction(
-    table: pymunk.Body, puck: pymunk.Body, shape: PuckGeometry, friction: SurfaceFriction
+    table: pymunk.Body,
+    puck: pymunk.Body,
+    shape: PuckGeometry,
+    friction: SurfaceFriction,
+    *,
+    straight: bool = False,
 ) -> list[pymunk.PivotJoint]:
     """Return the joints by which the table brakes the puck, to be added to the Space.
 
@@ -31,6 +36,12 @@ def surface_friction(
 
     A puck whose centre of mass lies off its middle by the share e of its radius presses with
     1 + 3 e cos of the even pressure, by the angle from there: then that is where its weight acts.
+
+    Args:
+        table, puck: the bodies.
+        shape: of the puck.
+        friction: all coefficients.
+        straight: each joint brakes straight against its point's velocity; see `_straightener`.
     """
     share = friction.puck_table * shape.mass * friction.gravity / POINTS
     heavy = math.radians(shape.mass_direction)
@@ -41,7 +52,7 @@ def surface_friction(
         point = (radius * math.cos(angle), radius * math.sin(angle))
         most = share * (1.0 + 3.0 * shape.mass_offset * math.cos(angle - heavy))
         joints.append(_brake(table, puck, point, most))
-    return [*joints, _straightener(table, puck, joints[0])] if shape.mass_offset else joints
+    return [*joints, _straightener(table, puck, joints[0])] if straight else joints
 
 
 def _brake(
@@ -63,9 +74,8 @@ def _straightener(
 
     The engine takes the impulse that would stop a point, and cuts it to the greatest force. Across
     the radius a smaller one stops it, for there the puck gives way by turning; so what is left of
-    it points too much along the radius, and a puck turns by a fifth too much. A round even puck
-    hides that. Here the puck cannot turn while the joints are prepared, and any point resists
-    alike.
+    it points too much along the radius, and a puck turns by a fifth too much. Here the puck cannot
+    turn while the joints are prepared, and any point resists alike.
     """
     body, moment = puck._body, puck.moment  # noqa: SLF001
     last = _brake(table, puck, (0.0, 0.0), 0.0)
