@@ -71,7 +71,7 @@ class SimulatedExperimenter:
 
         Choice: what only a turned tool could touch counts as out of reach. It is 3 % of the table
         for a stick turned by up to 60 degrees; left there, the attractor is out of reach of all
-        other behaviors for a while, which costs a fifth of the rows.
+        other behaviors for a while, which costs rows (see ``affcli/core/README.md``).
         """
         table = self._table
         point, depth = table.attractor.point, table.workspace.puck.radius - MOVEMENT_THRESHOLD

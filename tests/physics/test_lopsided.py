@@ -48,6 +48,7 @@ def test_the_law_of_an_uneven_pressure_ends_in_that_of_an_even_one() -> None:
         assert np.abs(table - np.interp(almost.force, even.force, other)).max() < 5e-3
 
 
+@pytest.mark.torture
 def test_pushes_of_a_lopsided_puck_end_where_the_quasi_static_solver_says(
     torture: bool, tell: Callable[[str], None]
 ) -> None:
