@@ -98,6 +98,28 @@ class PuckGeometry:
     radius: float = setting(1.5, "in", "Radius of the puck.")
     height: float = setting(1.0, "in", "Height of the puck.")
     mass: float = setting(0.165, "kg", "Mass of the puck.")
+    mass_offset: float = setting(
+        0.0,
+        "",
+        "How far its centre of mass lies off its middle, as a share of the radius. Choice: at most "
+        "a third, where one side of it bears nothing.",
+        low=0.0,
+        high=1.0 / 3.0,
+    )
+    mass_direction: float = setting(
+        0.0,
+        "degrees",
+        "Where the centre of mass lies when the puck is put down: 0 right, 90 away from the robot.",
+        low=-360.0,
+        high=360.0,
+    )
+    mass_turned: str = setting(
+        "fixed",
+        "",
+        "Whether that direction is the same each time, or drawn anew for each trial (§8) and each "
+        "time that the puck is put back; a verification always draws it.",
+        choices=("fixed", "drawn"),
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -52,7 +52,7 @@ class SimulatedExperimenter:
         self._table.put_down(tool)
         self._table.goal = goal
         self._table.wrist = self._table.home
-        self._table.attractor = Pose(start.x, start.y)
+        self._table.attractor = Pose(start.x, start.y, self._new_angle())
 
     def lay_out_verification(self, tool: Tool) -> None:
         """Begin a verification: tool at the table's centre, no goal (§8).
@@ -71,7 +71,7 @@ class SimulatedExperimenter:
 
         Choice: what only a turned tool could touch counts as out of reach. It is 3 % of the table
         for a stick turned by up to 60 degrees; left there, the attractor is out of reach of all
-        other behaviors for a while, which costs a fifth of the rows.
+        other behaviors for a while, which costs rows (see ``affcli/core/README.md``).
         """
         table = self._table
         point, depth = table.attractor.point, table.workspace.puck.radius - MOVEMENT_THRESHOLD
@@ -86,7 +86,7 @@ class SimulatedExperimenter:
         """
         table = self._table
         for _ in range(PLACEMENTS):
-            table.attractor = Pose(*self._random_place())
+            table.attractor = Pose(*self._random_place(), self._new_angle())
             if table.clear_of_attractor(table.wrist) and not self.attractor_out_of_reach():
                 return
         raise BadInputError(
@@ -153,6 +153,11 @@ class SimulatedExperimenter:
         u, v = self._rng.random(2).tolist()
         x = (2.0 * u - 1.0) * top.half_width
         return Point(x, top.near + v * (top.far - top.near))
+
+    def _new_angle(self) -> float:
+        """Return at which angle the puck is put down (rad): any where its heavy side is drawn."""
+        drawn = self._table.workspace.puck.mass_turned == "drawn"
+        return float(self._rng.uniform(-math.pi, math.pi)) if drawn else 0.0
 
     def _is_on_table(self, place: Point) -> bool:
         """Tell whether a place lies on the table."""

@@ -31,6 +31,7 @@ class PuckAndTool:
         puck: the puck.
         friction: all coefficients.
         settings: how finely to solve.
+        straight: as for `surface_friction`.
 
     Attributes:
         step: advances everything by a time (s).
@@ -48,6 +49,8 @@ class PuckAndTool:
         puck: PuckGeometry,
         friction: SurfaceFriction,
         settings: PhysicsSettings,
+        *,
+        straight: bool,
     ) -> None:
         space = pymunk.Space()
         space.iterations = settings.iterations
@@ -58,7 +61,11 @@ class PuckAndTool:
         # impulse outlives the step after a contact ends.
         space.collision_persistence = 1
         space.use_spatial_hash(64.0, 16)
-        body = pymunk.Body(puck.mass, 0.5 * puck.mass * puck.radius**2)
+        off = puck.mass_offset * puck.radius
+        body = pymunk.Body(puck.mass, puck.mass * (0.5 * puck.radius**2 - off**2))
+        if off:
+            heavy = math.radians(puck.mass_direction)
+            body.center_of_gravity = (off * math.cos(heavy), off * math.sin(heavy))
         rim = pymunk.Circle(body, puck.radius)
         rim.friction = 1.0
         tool = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
@@ -69,15 +76,14 @@ class PuckAndTool:
             # The engine multiplies the two coefficients of a contact.
             part.friction = friction.tool_puck
             space.add(part)
-        joints = surface_friction(table, body, puck, friction)
+        joints = surface_friction(table, body, puck, friction, straight=straight)
         space.add(*joints)
         self._owned = (space, body, rim, tool, table, joints)  # the engine does not keep them alive
         # A space that is freed goes over what is in it, and the program is aborted when garbage is
         # collected meanwhile that a body is in: so nothing is left in it.
         weakref.finalize(self, _empty, space).atexit = False
-        self._share = joints[0].max_force
         self._space, self._puck, self._tool = space._space, body._body, tool._body  # noqa: SLF001
-        self._joints = [joint._constraint for joint in joints]  # noqa: SLF001
+        self._joints = [(joint._constraint, joint.max_force) for joint in joints]  # noqa: SLF001
         self.step = partial(chipmunk.cpSpaceStep, self._space)
         self.move_tool = partial(chipmunk.cpBodySetVelocity, self._tool)
         self.turn_tool = partial(chipmunk.cpBodySetAngularVelocity, self._tool)
@@ -94,11 +100,11 @@ class PuckAndTool:
         # the last of another push. A step with the puck far away ends every contact, and one in
         # which the joints may not exceed zero is the only way to make them forget.
         self._place(Pose(*FAR_AWAY), wrist, turned)
-        for joint in self._joints:
+        for joint, _ in self._joints:
             chipmunk.cpConstraintSetMaxForce(joint, 0.0)
         self.step(STEP)
-        for joint in self._joints:
-            chipmunk.cpConstraintSetMaxForce(joint, self._share)
+        for joint, share in self._joints:
+            chipmunk.cpConstraintSetMaxForce(joint, share)
         self._place(puck, wrist, turned)
 
     def _place(self, puck: Pose, wrist: Point, turned: float) -> None:

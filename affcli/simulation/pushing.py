@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from functools import cached_property, partial
 
 from affcli.core.geometry import ConvexPolygon, Point, Pose
 from affcli.core.workspace import PuckGeometry, SurfaceFriction
@@ -47,7 +48,16 @@ class PushSimulator:
         self._outlines = tuple(outlines)
         self._radius = puck.radius
         self._tip = tip_of(self._outlines)
-        self._table = PuckAndTool(self._outlines, puck, friction, settings)
+        self._bodies = partial(PuckAndTool, self._outlines, puck, friction, settings)
+        # Straight pushes of an even puck, which all stored runs are made of, keep the friction that
+        # they had: so these runs can be done again to the bit.
+        self._straight = puck.mass_offset > 0.0
+        self._sliding = self._bodies(straight=self._straight)
+
+    @cached_property
+    def _turning(self) -> PuckAndTool:
+        """The bodies of turns, made when they are first needed."""
+        return self._sliding if self._straight else self._bodies(straight=True)
 
     def push(
         self,
@@ -81,14 +91,14 @@ class PushSimulator:
             if travel is None:
                 return puck
             gone, motion = skip(motion, max(0.0, travel - CONTACT_MARGIN))
-        table = self._table
+        table = self._sliding
         table.lay_out(puck, Point(wrist.x + gone * direction.x, wrist.y + gone * direction.y))
 
         def move(speed: float) -> None:
             table.move_tool((speed * direction.x, speed * direction.y))
 
-        self._simulate(move, 1.0, table.puck_from_tool, motion, gone, watch)
-        return self._rest(puck, wrist)
+        self._simulate(table, move, 1.0, table.puck_from_tool, motion, gone, watch)
+        return _rest(table, puck, wrist)
 
     def turn(
         self,
@@ -119,18 +129,19 @@ class PushSimulator:
             if arc is None:
                 return puck
             gone, motion = skip(motion, max(0.0, arc - CONTACT_MARGIN))
-        table = self._table
+        table = self._turning
         table.lay_out(puck, wrist, gone / lever)
 
         def turn(speed: float) -> None:
             table.turn_tool(speed / lever)
 
-        fastest = self._tip / abs(lever)
-        self._simulate(turn, fastest, table.puck_from_turned_tool, motion, gone, watch)
-        return self._rest(puck, wrist)
+        fastest, seen = self._tip / abs(lever), table.puck_from_turned_tool
+        self._simulate(table, turn, fastest, seen, motion, gone, watch)
+        return _rest(table, puck, wrist)
 
     def _simulate(
         self,
+        table: PuckAndTool,
         move: Callable[[float], None],
         fastest: float,
         seen: Callable[[], tuple[float, float]],
@@ -141,6 +152,7 @@ class PushSimulator:
         """Run a motion from where everything was laid out until the puck rests.
 
         Args:
+            table: the bodies.
             move: gives the tool a speed (in/s).
             fastest: no point of the tool moves faster than this many times that speed.
             seen: gives where the puck is in the tool's own frame (in).
@@ -148,7 +160,7 @@ class PushSimulator:
             gone: how far the tool is already (in).
             watch: called after each physics step.
         """
-        table, elapsed = self._table, 0.0
+        elapsed = 0.0
         pace = Pace(self._outlines, self._radius)
         for speed, steps in motion:
             move(speed)
@@ -165,24 +177,25 @@ class PushSimulator:
                         gone += stride * speed * STEP
                         watch(elapsed, gone, table.puck_pose())
         move(0.0)
-        self._settle(elapsed, gone, watch)
+        _settle(table, elapsed, gone, watch)
 
-    def _rest(self, puck: Pose, wrist: Point) -> Pose:
-        """Return where the puck lies now; SimulationDivergedError when that is nowhere."""
-        pose = self._table.puck_pose()
-        if not all(map(math.isfinite, pose)):
-            raise SimulationDivergedError(
-                f"the push from wrist ({wrist.x:.3f}, {wrist.y:.3f}) with the puck at "
-                f"({puck.x:.3f}, {puck.y:.3f}) gave {pose}; the behavior counts for nothing"
-            )
-        return pose
 
-    def _settle(self, elapsed: float, gone: float, watch: Moment | None) -> None:
-        """Let the puck come to rest after the tool has stopped."""
-        table = self._table
-        for step in range(1, SETTLE_STEPS + 1):
-            if table.puck_speed() < REST_SPEED:
-                return
-            table.step(STEP)
-            if watch is not None:
-                watch(elapsed + step * STEP, gone, table.puck_pose())
+def _settle(table: PuckAndTool, elapsed: float, gone: float, watch: Moment | None) -> None:
+    """Let the puck come to rest after the tool has stopped."""
+    for step in range(1, SETTLE_STEPS + 1):
+        if table.puck_speed() < REST_SPEED:
+            return
+        table.step(STEP)
+        if watch is not None:
+            watch(elapsed + step * STEP, gone, table.puck_pose())
+
+
+def _rest(table: PuckAndTool, puck: Pose, wrist: Point) -> Pose:
+    """Return where the puck lies now; SimulationDivergedError when that is nowhere."""
+    pose = table.puck_pose()
+    if not all(map(math.isfinite, pose)):
+        raise SimulationDivergedError(
+            f"the push from wrist ({wrist.x:.3f}, {wrist.y:.3f}) with the puck at "
+            f"({puck.x:.3f}, {puck.y:.3f}) gave {pose}; the behavior counts for nothing"
+        )
+    return pose

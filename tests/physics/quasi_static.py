@@ -101,12 +101,13 @@ class ContactLaw:
     rim: Array
     turning: Array
 
-    def __call__(self, normal: Array, tangential: Array) -> tuple[Array, Array]:
+    def __call__(self, normal: Array, tangential: Array, _: Array) -> tuple[Array, Array]:
         """Return tangential displacement of the centre and clockwise turn of the rim (in, in).
 
         Args:
             normal: displacement of the tool along n, > 0 (in).
             tangential: displacement of the tool along t (in).
+            _: where the heavy side is, for a disc that has one.
         """
         # np.interp holds the ends: beyond them the contact slides.
         ratio = tangential / normal
@@ -130,6 +131,90 @@ def contact_law(friction: float, nodes: int = NODES) -> ContactLaw:
     force = np.concatenate([-force[:0:-1], force])
     turn = np.concatenate([-turn[:0:-1], turn])
     return ContactLaw(force, force + turn, turn)
+
+
+@dataclass(frozen=True, slots=True)
+class UnevenLaw:
+    """The law of a contact of a disc that presses with 1 + 3 e cos, by the angle from its heavy
+    side; see `uneven_law`.
+
+    Args:
+        force: f, as in `ContactLaw` (F,).
+        rim, aside, turning: K(f), tangential velocity of the centre, and -R w, all over v_n, by the
+            angle from n to the heavy side, which goes around in equal steps (A, F).
+    """
+
+    force: Array
+    rim: Array
+    aside: Array
+    turning: Array
+
+    def __call__(self, normal: Array, tangential: Array, heavy: Array) -> tuple[Array, Array]:
+        """Return tangential displacement of the centre and clockwise turn of the rim (in, in)."""
+        angles = len(self.rim)
+        place = heavy / (2.0 * np.pi) * angles
+        low, share = np.floor(place).astype(np.intp), (place - np.floor(place))[:, None]
+
+        def between(table: Array) -> Array:
+            mixed: Array = (1.0 - share) * table[low % angles] + share * table[(low + 1) % angles]
+            return mixed
+
+        rim, aside, turning = map(between, (self.rim, self.aside, self.turning))
+        ratio = np.clip(tangential / normal, rim[:, 0], rim[:, -1])
+        at = np.clip((rim <= ratio[:, None]).sum(axis=1) - 1, 0, rim.shape[1] - 2)
+        each = np.arange(len(at))
+        part = (ratio - rim[each, at]) / (rim[each, at + 1] - rim[each, at])
+
+        def along(table: Array) -> Array:
+            value: Array = table[each, at] + part * (table[each, at + 1] - table[each, at])
+            return value
+
+        return normal * along(aside), normal * along(turning)
+
+
+@lru_cache
+def uneven_law(friction: float, offset: float, angles: int = 24, forces: int = 9) -> UnevenLaw:
+    """Return the law of a contact of a disc whose centre of mass lies `offset` radii off centre.
+
+    For each f the disc's twist is the one of least power of the table's friction among those on
+    which the contact force does one unit of work: there the friction is along that force. Found by
+    Newton's method for all angles and f at once, the power as a sum over small areas (R = 1).
+    """
+    rings, spokes = 12, 60
+    radius = ((np.arange(rings) + 0.5) / rings)[:, None]
+    around = (np.arange(spokes) + 0.5) * 2.0 * np.pi / spokes
+    along, across = (radius * np.cos(around)).ravel(), (radius * np.sin(around)).ravel()
+    heavy = np.arange(angles)[:, None] * 2.0 * np.pi / angles
+    force = np.linspace(-friction, friction, forces)
+    area = np.broadcast_to(radius, (rings, spokes)).ravel() * 2.0 / (rings * spokes)
+    bearing = np.broadcast_to(around, (rings, spokes)).ravel()
+    weight = np.repeat(area * (1.0 + 3.0 * offset * np.cos(bearing - heavy)), forces, axis=0)
+    f = np.tile(force, angles)[:, None]
+    # The velocity at each point is linear in what is sought, v_t and w: v_n = 1 - f (v_t - w).
+    slopes = np.stack(
+        [
+            np.stack([-f + 0.0 * along, 1.0 + 0.0 * along + 0.0 * f], axis=2),
+            np.stack([f - across, along + 0.0 * f], axis=2),
+        ],
+        axis=2,
+    )
+    found = np.zeros((len(f), 2))
+    found[:, 0] = f[:, 0]
+    for _ in range(100):
+        velocity = np.einsum("npvc,nv->npc", slopes, found)
+        velocity[..., 0] += 1.0
+        share = weight / np.sqrt(np.sum(velocity**2, axis=2) + 1e-6)
+        gradient = np.einsum("np,npvc,npc->nv", share, slopes, velocity)
+        squares = np.einsum("np,npvc,npuc->nvu", share, slopes, slopes)
+        step = np.linalg.solve(squares, gradient[..., None])[..., 0]
+        found -= step
+        if np.abs(step).max() < 1e-6:
+            break
+    else:
+        raise ArithmeticError(f"no twist of least power: it still moves by {np.abs(step).max():g}")
+    aside, turn = (column.reshape(angles, forces) for column in found.T)
+    normal = 1.0 - force * (aside - turn)
+    return UnevenLaw(force, (aside - turn) / normal, aside / normal, -turn / normal)
 
 
 class _Tools:
@@ -173,6 +258,7 @@ class _Touched:
         overlap: of the disc with each part, negative where they are apart (in).
         normal: unit vectors from each part into the disc.
         move: displacement of the tool in this step where it touches with each part (in).
+        heading: where the discs' own x axes point (rad).
     """
 
     rows: Indices
@@ -180,6 +266,7 @@ class _Touched:
     overlap: Array
     normal: Array
     move: Array
+    heading: Array
 
     def only(self, chosen: Indices | NDArray[np.bool_]) -> "_Touched":
         """Return some of the rows."""
@@ -189,22 +276,25 @@ class _Touched:
             self.overlap[chosen],
             self.normal[chosen],
             self.move[chosen],
+            self.heading[chosen],
         )
 
 
 class _Mechanics:
     """How discs answer to the overlap of one step."""
 
-    def __init__(self, tools: _Tools, law: ContactLaw, radius: float) -> None:
+    def __init__(self, tools: _Tools, law: ContactLaw | UnevenLaw, radius: float) -> None:
         self._tools = tools
         self._law = law
         self._radius = radius
 
-    def touched(self, at: Array, slid: Array, turned: Array, pivot: Array) -> _Touched:
+    def touched(
+        self, at: Array, heading: Array, slid: Array, turned: Array, pivot: Array
+    ) -> _Touched:
         """Return the pushes whose tool overlaps the disc.
 
         Args:
-            at: centres of the discs, as in `_Touched` (N, 2).
+            at, heading: of the discs, as in `_Touched` (N, 2), (N,).
             slid, turned: how far the tools moved and turned in this step (N, 2), (N,).
             pivot: about which they turned (N, 2).
         """
@@ -212,7 +302,7 @@ class _Mechanics:
         arm = (at - pivot)[:, None, :] - self._radius * normal
         across = np.stack([-arm[..., 1], arm[..., 0]], axis=2)
         move = slid[:, None, :] + turned[:, None, None] * across
-        every = _Touched(np.arange(len(at)), at, self._radius - distance, normal, move)
+        every = _Touched(np.arange(len(at)), at, self._radius - distance, normal, move, heading)
         return every.only(every.overlap.max(axis=1) > CLOSED)
 
     def answer(self, touched: _Touched, turned: Array) -> Array:
@@ -251,7 +341,8 @@ class _Mechanics:
         n = touched.normal[each, part]
         t = np.stack([-n[:, 1], n[:, 0]], axis=1)
         depth = np.maximum(touched.overlap[each, part], CLOSED)
-        aside, turned = self._law(depth, np.sum(touched.move[each, part] * t, axis=1))
+        heavy = touched.heading - np.arctan2(n[:, 1], n[:, 0])
+        aside, turned = self._law(depth, np.sum(touched.move[each, part] * t, axis=1), heavy)
         shift = depth[:, None] * n + aside[:, None] * t
         return np.column_stack([shift, -turned / self._radius])
 
@@ -278,6 +369,7 @@ def push_all(
     friction: float,
     stride: float = STRIDE,
     nodes: int = NODES,
+    offset: float = 0.0,
 ) -> Array:
     """Return where the disc of each push comes to rest: (N, 3) array of x, y (in), angle (rad).
 
@@ -287,11 +379,14 @@ def push_all(
         friction: Coulomb coefficient between the tool and the rim.
         stride: travel of the tool in a step (in).
         nodes: angles of the quadrature.
+        offset: how far the discs' centres of mass lie off their middles along their own x axes, as
+            a share of the radius; then the pressure is uneven and `nodes` does not count.
 
     Raises:
         ArithmeticError: three parts hold the disc at once, which this solver does not know.
     """
-    mechanics = _Mechanics(_Tools(pushes), contact_law(friction, nodes), radius)
+    law = uneven_law(friction, offset) if offset else contact_law(friction, nodes)
+    mechanics = _Mechanics(_Tools(pushes), law, radius)
     pucks = np.array([push.puck for push in pushes], dtype=np.float64)
     turn = np.array([push.turn for push in pushes], dtype=np.float64)
     pivot = np.array([push.pivot for push in pushes], dtype=np.float64)
@@ -306,7 +401,7 @@ def push_all(
         gone = ahead
         slid_so_far = gone[:, None] * direction
         at = _rotated(pucks[:, :2] - slid_so_far - pivot, -angle) + pivot
-        touched = mechanics.touched(at, slid, turned, pivot)
+        touched = mechanics.touched(at, pucks[:, 2] - angle, slid, turned, pivot)
         if touched.rows.size:
             answer = mechanics.answer(touched, turned[touched.rows])
             answer[:, :2] = _rotated(answer[:, :2], angle[touched.rows])

@@ -102,7 +102,7 @@ def test_the_contact_slides_when_the_tool_passes_by_faster_than_the_rim_can_foll
     law = contact_law(FRICTION)
     assert law.force[[0, -1]] == pytest.approx([-FRICTION, FRICTION])
     assert np.all(np.diff(law.rim) > 0.0)
-    aside, _ = law(np.array([1.0, 1.0]), np.array([-50.0, 50.0]))
+    aside, _ = law(np.array([1.0, 1.0]), np.array([-50.0, 50.0]), np.zeros(2))
     assert aside == pytest.approx([-FRICTION, FRICTION])
 
 

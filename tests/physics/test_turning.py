@@ -108,6 +108,7 @@ def report(what: str, position: Array) -> str:
     )
 
 
+@pytest.mark.torture
 def test_turns_end_where_the_quasi_static_solver_says(
     used: Mapping[str, PushSimulator], torture: bool, tell: Callable[[str], None]
 ) -> None:
@@ -123,6 +124,7 @@ def test_turns_end_where_the_quasi_static_solver_says(
     assert position.max() <= MAX
 
 
+@pytest.mark.torture
 def test_slides_at_an_angle_end_where_the_quasi_static_solver_says(
     torture: bool, tell: Callable[[str], None]
 ) -> None:

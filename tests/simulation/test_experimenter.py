@@ -199,3 +199,28 @@ def test_a_table_on_which_nothing_is_in_reach_is_bad_input_that_names_the_table(
     with pytest.raises(BadInputError, match=r"stick in 20 tries; bring table\.near") as told:
         setting.experimenter.put_attractor_back()
     assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize("turned", ["fixed", "drawn"])
+def test_the_heavy_side_of_the_puck_is_drawn_anew_where_it_is_to_be(turned: str) -> None:
+    """For each trial, and each time that the puck is put back (§8)."""
+    chosen = settings_with({"puck": {"mass_offset": 0.3, "mass_turned": turned}}, "a test")
+    angles = set()
+    for seed in range(5):
+        setting = setting_with("stick", seed, settings=chosen)
+        setting.experimenter.lay_out_trial(
+            tool_named("stick"), Point(3.0, 22.4), goal_at(0.0, 15.0)
+        )
+        angles.add(setting.table.attractor.angle)
+        setting.experimenter.put_attractor_back()
+        angles.add(setting.table.attractor.angle)
+    assert len(angles) == {"fixed": 1, "drawn": 10}[turned]
+    assert all(abs(angle) <= math.pi for angle in angles)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("mass_offset", 0.34), ("mass_turned", "now and then"), ("mass", 0.0)]
+)
+def test_a_puck_that_cannot_be_is_refused(name: str, value: float | str) -> None:
+    with pytest.raises(BadInputError, match=rf"puck.{name} = .* must"):
+        settings_with({"puck": {name: value}}, "a test")
