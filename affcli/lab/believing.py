@@ -2,15 +2,18 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from affcli import registry
-from affcli.baselines.beliefs.pushes import Belief, pushes
 from affcli.baselines.planners import ORACLE
 from affcli.core.identity import Component
 from affcli.core.specs import LearningSpec, LearningStep
 from affcli.core.tool import Tool
 from affcli.errors import UsageError
 from affcli.lab.run_parts import settings_of
+
+if TYPE_CHECKING:
+    from affcli.baselines.beliefs.pushes import Belief
 
 TOLD = "told"
 """In the place of an explorer: nothing was explored, the table was computed."""
@@ -45,7 +48,7 @@ def told_spec(learned: LearningSpec, planner: Component, held: Tool | None = Non
     spacing, friction = _told(planner)
     explorer = Component.of(TOLD, {"spacing": spacing, "friction": friction})
     told = replace(learned, held=believed, explorer=explorer, hours=None, behaviors=1)
-    return replace(told, behaviors=len(pushes(_belief(told))))
+    return replace(told, behaviors=len(_pushes(told)))
 
 
 class ToldRun:
@@ -67,10 +70,21 @@ class ToldRun:
 
     def steps(self) -> Iterator[LearningStep]:
         """Yield each push that is believed to move the attractor."""
-        yield from pushes(_belief(self._spec))
+        yield from _pushes(self._spec)
 
 
-def _belief(spec: LearningSpec) -> Belief:
+def _pushes(spec: LearningSpec) -> tuple[LearningStep, ...]:
+    """Return the pushes that a baseline is told."""
+    # The physics engine: it is loaded only where there is a baseline.
+    from affcli.baselines.beliefs.pushes import pushes
+
+    return pushes(belief_of(spec))
+
+
+def belief_of(spec: LearningSpec) -> "Belief":
+    """Return what a baseline believes whose table is a function of `spec`."""
+    from affcli.baselines.beliefs.pushes import Belief
+
     settings, told = settings_of(spec), dict(spec.explorer.params)
     belief = Belief(
         *(spec.held, spec.binding, spec.repertoire, settings.workspace, settings.physics),

@@ -13,7 +13,7 @@ from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.geometry import Point, near_any
 from affcli.core.specs import Protocol, RobotRecord
 from affcli.errors import BadInputError, UsageError
-from affcli.lab.believing import _belief, is_told, require_own, told_spec
+from affcli.lab.believing import belief_of, is_told, require_own, told_spec
 from affcli.lab.definition import experiment_file
 from affcli.lab.experiment import one_robot
 from affcli.simulation.pushing import PushSimulator
@@ -54,7 +54,7 @@ def life(tmp_path_factory: pytest.TempPathFactory) -> RobotRecord:
 
 def test_each_push_that_is_told_is_what_the_physics_gives() -> None:
     spec = told_spec(LEARNED, registry.component("planners", f"oracle:{COARSE}"))
-    belief = _belief(spec)
+    belief = belief_of(spec)
     outlines, place = spec.held.outlines, belief.workspace
     simulator = PushSimulator(outlines, place.puck, place.friction, belief.physics)
     steps = pushes(belief)
@@ -86,7 +86,7 @@ def test_the_oracle_knows_the_tool_that_is_left_and_the_push_planner_believes_th
 
 def test_what_is_believed_of_friction_changes_the_pushes() -> None:
     plain, rough = (
-        pushes(_belief(told_spec(LEARNED, registry.component("planners", text))))
+        pushes(belief_of(told_spec(LEARNED, registry.component("planners", text))))
         for text in (f"push-planner:{COARSE}", f"push-planner:{COARSE},friction=0.9")
     )
     assert plain != rough
