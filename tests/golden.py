@@ -15,6 +15,11 @@ from affcli.core.specs import LearningStep, RobotRecord, TrialRecord
 
 GOLDEN: dict[str, dict[str, str]] = json.loads(Path(__file__).with_name("golden.json").read_text())
 """For each sensor the digests by robot: of its learning, then of its trials."""
+CAMERA_ROWS: dict[str, list[list[object]]] = json.loads(
+    Path(__file__).with_name("golden_camera.json").read_text()
+)
+"""The same of a robot with a camera, by its tool: the rows themselves. Their last bits are those of
+the processor that calibrated, of which there are several; digests cannot say how near two are."""
 SEED = 4242
 
 

@@ -18,6 +18,7 @@ from affcli.simulation.table_world import TableWorld
 from affcli.simulation.worlds import TABLE_VERSION
 
 MOVING = ("extend-arm", "contract-arm", "slide-arm-left", "slide-arm-right")
+TURNING = ("turn-wrist", "turn-and-pull", "turn-and-slide")
 SETTINGS = {
     "arm.elbow_max_degrees": 146.0,
     "arm.flange_height": 1.05,
@@ -123,6 +124,9 @@ LIMITS = {
     "bindings: grasp: angle": (-180.0, 180.0),
     "bindings: grasp: grasp_point": (0.0, 100.0),
     **{f"behaviors: {name}: offset_distance": (0.1, 20.0) for name in MOVING},
+    **{f"behaviors: {name}: angle": (-180.0, 180.0) for name in TURNING},
+    **{f"behaviors: {name}: distance": (0.1, 20.0) for name in TURNING},
+    "behaviors: turn-and-slide: direction": (-360.0, 360.0),
     **{
         f"explorers: {name}: {param}": limits
         for name in ("goal-babbling", "information-gain", "occupancy", "thompson")
@@ -134,9 +138,28 @@ LIMITS = {
             "place": (1.0, 20.0),
         }.items()
     },
-    "planners: nested-query: angle_degrees": (1.0, 180.0),
+    "planners: nested-query: guard": (0.0, 30.0),
     "planners: nested-query: share": (0.001, 1.0),
-    "planners: nested-query: threshold": (0.0, 0.999),
+    "planners: lookahead: smoothing": (0.0, 5.0),
+    "planners: robust: radius": (0.05, 5.0),
+    **{
+        f"planners: {name}: {param}": limits
+        for param, limits in {
+            "angle_degrees": (1.0, 180.0),
+            "threshold": (0.0, 0.999),
+            "depth": (1, 8),
+            "beam": (1, 400),
+            "counters": (0, 1),
+            "spacing": (0.25, 2.0),
+            "friction": (0.0, 10.0),
+        }.items()
+        for name in registry.parts("planners")
+    },
+    "puck.mass_direction": (-360.0, 360.0),
+    "puck.mass_offset": (0.0, 1.0 / 3.0),
+    "tasks: anywhere: half_width": (0.1, 10.0),
+    "tasks: anywhere: n": (1, 1000),
+    "tasks: anywhere: seed": (0, 2**63 - 1),
 }
 """Of what may be less, or not as much, as any length, speed, time or count."""
 
