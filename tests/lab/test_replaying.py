@@ -278,6 +278,24 @@ def test_runs_by_two_grasps_and_another_repertoire_are_solved_and_done_again(
     assert_equal_to_the_record(store)
 
 
+def test_a_wrist_that_turns_and_a_lopsided_puck_are_solved_with_and_done_again(
+    store: Store,
+) -> None:
+    """To the bit, from the wrist turned by a behavior and the puck turned as it was drawn."""
+    puck = {"puck": {"mass_offset": 0.3, "mass_turned": "drawn"}, "trial": {"max_steps": 6}}
+    turning = ["paper", "turn-and-pull:angle=60", "turn-wrist"]
+    parts = RunParts.chosen(settings_with(puck, "a test"), repertoire=turning)
+    one = stored(store, parts.spec("stick", 0, 0, None, 120))
+    assert {row.row.exploratory.name for row in store.learning.rows(one.id)} >= {
+        "turn and pull",
+        "turn wrist",
+    }
+    counted(solving(store, one, "1"))
+    ends = run_sql(store.path, "select count(*) from step where wrist_end_angle > 0.5").rows
+    assert ends[0][0] > 0
+    assert_equal_to_the_record(store)
+
+
 def with_rows(store: Store, spec: LearningSpec, rows: list[Affordance]) -> LearningRunInfo:
     """Return a stored run whose table has rows that no behavior of it made."""
     run = stored(store, spec)
