@@ -1,6 +1,7 @@
 """Each experiment of ``experiments/`` that is a file runs: here with two short robots."""
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +11,8 @@ from affcli.config import toml_file
 from affcli.core.specs import LIVES
 from affcli.lab.conducting import begin, run
 from affcli.lab.definition import experiment_file, experiment_of
+from affcli.lab.experiment import ADAPTATION
+from affcli.lab.run_parts import tasks_of
 from affcli.store import open_store
 from tests.lab.quick import now
 from tests.readmes import ROOT
@@ -20,13 +23,16 @@ SHORT = {"minutes": 2, "settings": {"trial": {"max_steps": 3}}}
 
 def test_each_folder_with_robots_has_its_file() -> None:
     whole = {path.parent.name for path in FILES if path.name == "experiment.toml"}
-    assert whole == {"camera", "extension_of_reach", "tool_adaptation"}
+    assert whole == {"camera", "extension_of_reach", "lookahead", "planners", "tool_adaptation"}
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}/{path.name}")
 def test_two_short_robots_live(path: Path, tmp_path: Path) -> None:
     whole, tables = experiment_file(path), toml_file(path, "")
-    short = experiment_of({**tables, "base": {**tables.get("base", {}), **SHORT}}, "a test")
+    base = {**tables.get("base", {}), **SHORT}
+    if "tasks" in base:
+        base["tasks"] = [re.sub(r"n=\d+", "n=1", text) for text in base["tasks"]]
+    short = experiment_of({**tables, "base": base}, "a test")
     assert [c.name for c in short.conditions] == [c.name for c in whole.conditions]
     with open_store(tmp_path / "short.db", create=True, write=True) as store:
         info = begin(store, replace(short, robots=2), now)
@@ -34,7 +40,10 @@ def test_two_short_robots_live(path: Path, tmp_path: Path) -> None:
         assert store.experiments.named(whole.name).status == "done"
         for condition, (name, session) in zip(short.conditions, info.conditions, strict=True):
             trials = store.trials.trials(session_id=session)
-            assert len(trials) == 2 * (16 * len(condition.tools) + 16), name
+            sets = [text for text in condition.tasks if text != ADAPTATION]
+            tasks = sum(len(tasks_of(condition.world, text, 0)) for text in sets)
+            broken = 16 * (ADAPTATION in condition.tasks)
+            assert len(trials) == 2 * (tasks * len(condition.tools) + broken), name
             assert {trial.spec.robot for trial in trials} == {0, 1}
         assert len(store.sessions.all(*LIVES)) == len(info.conditions)
 
