@@ -31,6 +31,8 @@ class Situation:
         wrist: where the wrist is (in, rad, table frame).
         reaches: which wrist positions can be taken up.
         holding: the binding behavior by which the tool is held; None when that is not known.
+        slides: where the wrist can be while the tool slides on the table, which may be nearer than
+            where it can be set down; None when that is not known.
     """
 
     table: AffordanceTable
@@ -39,6 +41,7 @@ class Situation:
     wrist: Pose
     reaches: Reaches
     holding: BehaviorCall | None = None
+    slides: Reaches | None = None
 
 
 class Move(NamedTuple):

@@ -5,7 +5,7 @@ Each contract says what is asked, when, how often, and what holds after a failur
 """
 
 from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,6 +62,21 @@ class Robot(Protocol):
     ) -> NDArray[np.bool_]:
         """Tell for each wrist position (n,), (n,) (in, table frame) whether the arm reaches it with
         the wrist at an angle (rad): one for all, or one each (n,).
+        """
+
+
+@runtime_checkable
+class Sliding(Protocol):
+    """A robot that knows where it can slide a tool, a capability that it may lack."""
+
+    def slides(
+        self,
+        x: NDArray[np.float64],
+        y: NDArray[np.float64],
+        angle: NDArray[np.float64] | float = 0.0,
+    ) -> NDArray[np.bool_]:
+        """Tell for each wrist position (n,), (n,) (in, table frame), at an angle (rad), whether the
+        arm can hold the tool on the table there; a slide ends where it cannot.
         """
 
 

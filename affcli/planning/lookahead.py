@@ -19,7 +19,7 @@ from affcli.core.setting import Setting
 from affcli.planning.neighbours import smoothed
 from affcli.planning.nested_query import JUDGING, usable_rows
 from affcli.planning.one_step import candidates
-from affcli.planning.row_model import CELL, LARGEST_CELL, Floats, RowModel, first_in_cells
+from affcli.planning.row_model import CELL, LARGEST_CELL, Ends, Floats, RowModel, first_in_cells
 
 DEEPEST, WIDEST = 8, 400
 """Limits of a search: moves ahead, and places from which each further move is looked for."""
@@ -211,8 +211,7 @@ class _Search:
             rows: among which the move is looked for.
             begins: there are no moves yet.
         """
-        x, y, reaches = before.x[kept], before.y[kept], self._situation.reaches
-        place, row, x, y, further = self._model.ends(rows, x, y, reaches)
+        place, row, x, y, further = self._ends(rows, before.x[kept], before.y[kept])
         parent = kept[place]
         first = row if begins else before.first[parent]
         cost = before.cost[parent] + self._steps[row] + FURTHER * further
@@ -223,6 +222,11 @@ class _Search:
         elsewhere = NO_WAY + cost + STEPS_TO_GO * (away + carried)
         worth = np.where(arrived, there, elsewhere)
         return _Layer(x, y, cost, first, row, parent, worth)
+
+    def _ends(self, rows: Rows, x: Floats, y: Floats) -> Ends:
+        """Return what rows do from some places."""
+        here = self._situation
+        return self._model.ends(rows, x, y, here.reaches, here.slides)
 
     def _avoid_dead_ends(self) -> None:
         """Find whether the best paths that do not lead to the goal leave a row to use."""
@@ -235,7 +239,7 @@ class _Search:
         best = np.argpartition(whole, min(LOOKED_AT, len(whole)) - 1)[:LOOKED_AT]
         x = np.array([self._layers[number[i]].x[position[i]] for i in best])
         y = np.array([self._layers[number[i]].y[position[i]] for i in best])
-        living = self._model.ends(self._few, x, y, self._situation.reaches).place
+        living = self._ends(self._few, x, y).place
         for i in np.delete(best, np.unique(living)):
             worths[number[i]][position[i]] += DEAD_END
 

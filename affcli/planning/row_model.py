@@ -113,7 +113,9 @@ class RowModel:
             cell *= 2.0
         return kept[:most]
 
-    def ends(self, rows: Rows, x: Floats, y: Floats, reaches: Reaches) -> Ends:
+    def ends(
+        self, rows: Rows, x: Floats, y: Floats, reaches: Reaches, slides: Reaches | None = None
+    ) -> Ends:
         """Return what rows do from some places, as far as they can be used there.
 
         A row can be used where its wrist position is within reach and it is expected to move the
@@ -122,7 +124,8 @@ class RowModel:
         Args:
             rows: which, by their positions in the table (m,).
             x, y: where the attractor would be (k,), (k,) (in, table frame).
-            reaches: which wrist positions can be taken up; taken for where a slide ends, too.
+            reaches: which wrist positions can be taken up.
+            slides: where the wrist can slide; None for where it can be set down.
 
         Returns:
             Place by place, rows in the order given.
@@ -133,14 +136,15 @@ class RowModel:
         usable = np.flatnonzero(reaches(wrist_x, wrist_y, angle))
         place, column = np.divmod(usable, max(len(rows), 1))
         row, x_from, y_from = rows[column], wrist_x[usable], wrist_y[usable]
-        gone = self._share_gone(row, x_from, y_from, reaches)
+        slides = slides or reaches
+        gone = self._share_gone(row, x_from, y_from, slides)
         whole = np.hypot(self.movement_x[row], self.movement_y[row])
         travel = np.hypot(self.travel_x[row], self.travel_y[row])
         length = whole - (1.0 - gone) * travel
         further = np.zeros(len(row), dtype=bool)
         cut = np.flatnonzero(self.truncated[row])
         on = 1.0 + BEYOND / np.maximum(travel[cut], BEYOND)
-        further[cut] = reaches(
+        further[cut] = slides(
             x_from[cut] + on * self.travel_x[row[cut]],
             y_from[cut] + on * self.travel_y[row[cut]],
             self.angle[row[cut]],

@@ -80,7 +80,28 @@ class SimulatedRobot:
         To set it down the arm must hold it there both lifted and on the table.
         """
         inner = max(self._low.inner, self._high.inner)
-        outer = min(self._low.outer, self._high.outer)
+        return self._within(inner, min(self._low.outer, self._high.outer), x, y, angle)
+
+    def slides(
+        self,
+        x: NDArray[np.float64],
+        y: NDArray[np.float64],
+        angle: NDArray[np.float64] | float = 0.0,
+    ) -> NDArray[np.bool_]:
+        """Tell for each wrist position (n,), (n,), at an angle, whether the arm can hold the tool
+        on the table there: nearer than where it could lift it, too.
+        """
+        return self._within(self._low.inner, self._low.outer, x, y, angle)
+
+    def _within(
+        self,
+        inner: float,
+        outer: float,
+        x: NDArray[np.float64],
+        y: NDArray[np.float64],
+        angle: NDArray[np.float64] | float,
+    ) -> NDArray[np.bool_]:
+        """Tell whether places lie within a ring and the ranges of waist and roll."""
         squared = x * x
         squared += y * y
         held = squared >= inner * inner

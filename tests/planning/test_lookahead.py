@@ -81,6 +81,29 @@ def test_a_row_is_expected_to_do_no_more_than_it_did_and_stops_where_the_reach_e
             assert np.hypot(x - at.x, y - at.y) <= whole + 1e-9
 
 
+def test_a_slide_goes_on_where_the_tool_can_be_held_but_not_set_down() -> None:
+    """A pull that begins within reach ends nearer to the robot than the tool could be lowered."""
+    table = table_of(row(1, (-5.0, 0.0)))
+    set_down = FakeRobot(FakeTable(), reachable=lambda p: p.x >= -2.0).reaches
+    held = FakeRobot(FakeTable(), reachable=lambda p: p.x >= -4.0).reaches
+    at, rows = np.zeros(1), np.arange(1)
+    for slides, ends in ((None, -2.0), (held, -4.0)):
+        found = RowModel.of(table).ends(rows, at, at, set_down, slides)
+        assert found.x[0] == pytest.approx(ends, abs=0.1)
+
+
+def test_a_truncated_row_that_will_go_further_is_known() -> None:
+    made = row(1, (2.0, 0.0))
+    table = AffordanceTable([replace(made, truncated=True), replace(made, step=2)])
+    near, far = (
+        FakeRobot(FakeTable(), reachable=rule).reaches
+        for rule in (lambda p: p.x <= 2.1, lambda p: p.x <= 9.0)
+    )
+    for reaches, further in ((near, [False, False]), (far, [True, False])):
+        found = RowModel.of(table).ends(np.arange(2), np.zeros(1), np.zeros(1), reaches)
+        assert found.further.tolist() == further
+
+
 def test_the_model_of_a_table_is_that_of_its_rows_whatever_their_counters() -> None:
     table = table_of(row(1, RIGHT), row(2, AWAY))
     before = RowModel.of(table)

@@ -287,6 +287,19 @@ def test_the_arm_reaches_where_joint_angles_hold_the_tool_both_lifted_and_on_the
         assert not certain or bool(said) is true
 
 
+def test_a_slide_ends_where_the_robot_says_that_it_cannot_slide() -> None:
+    """Nearer than where the tool could be set down."""
+    setting = setting_with("stick")
+    robot, wrist = setting.robot, Pose(0.0, 0.5 * (INNER + LOW.inner) + 1.0)
+    setting.table.wrist, setting.table.attractor = wrist, AWAY
+    done = robot.execute(BehaviorCall.of(CONTRACT_ARM, {"offset_distance": 5.0}), None)
+    end = done.wrist_end.y
+    assert done.status is TRUNCATED
+    places = np.array([wrist.y, end + 0.01, end - 0.01])
+    assert robot.slides(np.zeros(3), places).tolist() == [True, True, False]
+    assert not robot.reaches(np.zeros(1), np.array([end + 0.01])).any()
+
+
 @settings(deadline=None)
 @given(st.floats(-25.0, 25.0), st.floats(0.5, 25.0))
 def test_position_wrist_succeeds_where_the_robot_says_it_reaches(x: float, y: float) -> None:
