@@ -22,6 +22,7 @@ from tests.cli.program import (
     started,
     wait_until,
 )
+from tests.cli.without import without
 
 TEXT = """
 [experiment]
@@ -172,3 +173,11 @@ def test_a_cluster_or_workers_of_this_machine(toml: Path, tmp_path: Path) -> Non
     assert line.endswith("--scheduler is of a cluster: give one of them")
     line = refused(4, "experiment", toml, "--scheduler", "none.json")
     assert "--scheduler none.json: No such file" in line
+
+
+def test_without_dask_it_names_what_to_install(toml: Path, tmp_path: Path) -> None:
+    words = ("experiment", toml, "--scheduler", "tcp://127.0.0.1:9", "--db", tmp_path / "my.db")
+    ended = without("distributed", *words)
+    assert (ended.code, ended.out) == (2, "")
+    assert ended.err.endswith("install it here and there: pip install 'affcli[cluster]'\n")
+    assert len(ended.err.splitlines()) == 1
