@@ -16,7 +16,6 @@ from affcli.config import (
     load_settings,
     settings_with,
 )
-from affcli.core.observation import SENSOR_KINDS
 from affcli.errors import BadInputError
 from tests.factories import UNITS
 
@@ -61,7 +60,8 @@ def other_value(section: str, key: str) -> float | int | str:
     """Return a value that this key may have and that is not its default."""
     value = DEFAULTS[section][key]
     if isinstance(value, str):
-        return next(kind for kind in SENSOR_KINDS if kind != value)
+        choices = known_settings()[f"{section}.{key}"].choices
+        return next(choice for choice in choices if choice != value)
     if isinstance(value, int):
         return value + 1
     return float(value) * 0.75 if value else 0.125
@@ -139,7 +139,7 @@ overrides = (
             section: {
                 key: max(1, round(DEFAULTS[section][key] * share))
                 if isinstance(DEFAULTS[section][key], int)
-                else abs(DEFAULTS[section][key]) * share or share
+                else abs(DEFAULTS[section][key]) * share or share / 4.0
                 for (theirs, key), share in shares.items()
                 if theirs == section
             }
@@ -203,12 +203,14 @@ def test_what_is_no_number_in_range_is_refused_for_every_key(tmp_path: Path, val
 @pytest.mark.fault(23)
 def test_negative_numbers_are_refused_but_for_an_angle_and_places(tmp_path: Path) -> None:
     negative = {("arm", "shoulder_min_degrees"), ("camera", "x"), ("camera", "y")}
+    negative.add(("puck", "mass_direction_degrees"))
     for section, key in KEYS:
+        choices = known_settings()[f"{section}.{key}"].choices
         text = f"[{section}]\n{key} = -1\n"
         if (section, key) in negative:
             assert values_of(load_settings(written(tmp_path, text)))[section][key] == -1.0
-        elif (section, key) == ("sensor", "kind"):
-            assert "sensor.kind = -1 must be one of noisy" in refused(tmp_path, text)
+        elif choices:
+            assert f"{section}.{key} = -1 must be one of {choices[0]}" in refused(tmp_path, text)
         else:
             assert f"{section}.{key} = -1 must lie in" in refused(tmp_path, text)
 

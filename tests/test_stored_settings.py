@@ -30,7 +30,10 @@ from affcli.perception.noisy_sensor import SensorSettings
 from affcli.procedures.extension_of_reach import TrialLimits
 from tests.test_config import overrides
 
-ADDED = {"motion.regrasp_time"}
+ADDED = {
+    *("motion.regrasp_time", "motion.turn_speed", "motion.turn_acceleration"),
+    *("puck.mass_offset", "puck.mass_direction_degrees", "puck.mass_turned"),
+}
 """Settings that came after the first version."""
 
 

@@ -106,7 +106,7 @@ class PuckGeometry:
         low=0.0,
         high=1.0 / 3.0,
     )
-    mass_direction: float = setting(
+    mass_direction_degrees: float = setting(
         0.0,
         "degrees",
         "Where the centre of mass lies when the puck is put down: 0 right, 90 away from the robot.",

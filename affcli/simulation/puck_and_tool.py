@@ -64,7 +64,7 @@ class PuckAndTool:
         off = puck.mass_offset * puck.radius
         body = pymunk.Body(puck.mass, puck.mass * (0.5 * puck.radius**2 - off**2))
         if off:
-            heavy = math.radians(puck.mass_direction)
+            heavy = math.radians(puck.mass_direction_degrees)
             body.center_of_gravity = (off * math.cos(heavy), off * math.sin(heavy))
         rim = pymunk.Circle(body, puck.radius)
         rim.friction = 1.0

@@ -44,7 +44,7 @@ def surface_friction(
         straight: each joint brakes straight against its point's velocity; see `_straightener`.
     """
     share = friction.puck_table * shape.mass * friction.gravity / POINTS
-    heavy = math.radians(shape.mass_direction)
+    heavy = math.radians(shape.mass_direction_degrees)
     joints = []
     for k in range(POINTS):
         angle = 2.0 * math.pi * k / POINTS

@@ -31,7 +31,7 @@ SHAPES_PUSHED = (*PAPER_SHAPES, "bar at 35 degrees")
 
 def simulator(shape: str, offset: float, degrees: float = 0.0) -> PushSimulator:
     """Return a simulator of a shape and a puck with its heavy side in some direction."""
-    puck = replace(WORKSPACE.puck, mass_offset=offset, mass_direction=degrees)
+    puck = replace(WORKSPACE.puck, mass_offset=offset, mass_direction_degrees=degrees)
     return PushSimulator(SHAPES[shape], puck, WORKSPACE.friction, PhysicsSettings())
 
 
