@@ -13,6 +13,7 @@ REACH = "experiments/extension_of_reach/README.md"
 ADAPTATION = "experiments/tool_adaptation/README.md"
 CAMERA = "experiments/camera/README.md"
 VERIFICATION = "experiments/verification/README.md"
+EXPLORATION = "experiments/exploration/README.md"
 SPEED = "experiments/speed/README.md"
 ANALYSIS = "affcli/analysis/README.md"
 
@@ -246,3 +247,15 @@ def test_how_often_intervals_tests_and_powers_were_right() -> None:
         means["single cells"]["given and wrong, at most"] for means in found["means"].values()
     )
     assert f"in at most {wrong:.1f} of 100 studies" in flowing(ANALYSIS)
+
+
+def test_what_each_way_to_explore_solves() -> None:
+    results, lines = measured("exploration/results.json"), text_of(EXPLORATION).splitlines()
+    assert f"({results['robots']} robots, seed {results['seed']}" in flowing(EXPLORATION)
+    for name, one in results["conditions"].items():
+        low, high = one["interval"]
+        line = f"| {name} | {one['mean']:.1f} ({low:.1f} to {high:.1f}) |"
+        if name != results["against"]:
+            low, high = one["paired"]
+            line += f" {one['difference']:+.1f} ({low:+.1f} to {high:+.1f}) |"
+        assert any(said.startswith(line) for said in lines), line
