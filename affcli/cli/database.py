@@ -3,8 +3,8 @@
 SQLAlchemy loads when the database is opened: a command's help does without.
 """
 
-from collections.abc import Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from affcli import registry, store
@@ -16,11 +16,15 @@ from affcli.errors import BadInputError, UsageError, one_line
 
 MOST_NAMED = 10
 
+MOST_NAMED = 3
+"""So many records that cannot be read are named; `affcli db check` finds the others."""
 
-def opened(
-    database: Path, *, create: bool = False, write: bool = False
-) -> "AbstractContextManager[store.Store]":
+
+@contextmanager
+def opened(database: Path, *, create: bool = False, write: bool = False) -> Iterator["store.Store"]:
     """Open a database, to read it if nothing else is said, and close it after the block.
+
+    What lists had to leave out is said then.
 
     Args:
         database: the file.
@@ -30,7 +34,13 @@ def opened(
     Raises:
         DatabaseError: it cannot be opened, or is none of ours.
     """
-    return store.open_store(database, create=create, write=write)
+    with store.open_store(database, create=create, write=write) as records:
+        yield records
+    for line in records.left_out[:MOST_NAMED]:
+        say(f"left out: {line}")
+    more = len(records.left_out) - MOST_NAMED
+    if more > 0:
+        say(f"left out: {more} more records; see: {with_database('affcli db check', database)}")
 
 
 def learned_runs(
@@ -68,7 +78,7 @@ def learned_runs(
 
 def _learned_tools(records: "store.Store") -> list[str]:
     """Return the tools that were learned: those that are registered first, in their order."""
-    there = {one.spec.tool for one in records.learning.runs(status="done")}
+    there = records.learning.tools()
     known = dict.fromkeys([*registry.parts("tools"), *sorted(there)])
     return [name for name in known if name in there]
 

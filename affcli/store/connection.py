@@ -2,10 +2,10 @@
 
 import sqlite3
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import sqlalchemy as sa
 from sqlalchemy.dialects import sqlite
@@ -13,8 +13,10 @@ from sqlalchemy.dialects import sqlite
 from affcli.errors import DatabaseError, UsageError, one_line
 from affcli.store.columns import COLUMNS, JSON_COLUMNS
 from affcli.store.faults import faults_named
+from affcli.store.reading import UnreadableError
 from affcli.store.waiting import Waiting
 
+Record = TypeVar("Record")
 LARGEST = 1e9
 """No length, angle or time of this laboratory is larger; ten thousand hours are 3.6e7 s."""
 
@@ -30,6 +32,8 @@ class Database:
     def __init__(self, connection: sa.Connection, driver: Waiting) -> None:
         self._connection = connection
         self._driver = driver
+        self.left_out: dict[str, None] = {}
+        """What was said of records that lists left out, in order, each once."""
 
     @property
     def path(self) -> Path:
@@ -56,6 +60,16 @@ class Database:
         """
         with self.reading() as connection:
             return mappings(connection, wanted)
+
+    def readable(
+        self, read: Callable[[Mapping[str, Any]], Record], rows: Iterable[Mapping[str, Any]]
+    ) -> Iterator[Record]:
+        """Yield the records of a list; one that cannot be read is left out, and named."""
+        for row in rows:
+            try:
+                yield read(row)
+            except UnreadableError as error:
+                self.left_out[str(error)] = None
 
     @contextmanager
     def writing(self) -> Iterator[sa.Connection]:

@@ -110,11 +110,13 @@ class Experiments:
         return known[one_of("experiment", name, known)]
 
     def all(self) -> tuple[ExperimentInfo, ...]:
-        """Return the experiments, oldest first."""
+        """Return the experiments that can be read, oldest first."""
         with self.database.reading() as connection:
             found = mappings(connection, sa.select(experiment).order_by(experiment.c.id))
             return tuple(
-                reading.experiment(row, sessions_of(connection, row["id"])) for row in found
+                self.database.readable(
+                    lambda row: reading.experiment(row, sessions_of(connection, row["id"])), found
+                )
             )
 
     def finish(self, experiment_id: int, now: str) -> None:

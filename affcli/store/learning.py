@@ -157,7 +157,7 @@ class Learning:
     def runs(
         self, *, tool: str | None = None, session_id: int | None = None, status: str | None = None
     ) -> tuple[LearningRunInfo, ...]:
-        """Return the stored runs, oldest first.
+        """Return the stored runs that can be read, oldest first.
 
         Args:
             tool: only those of this tool.
@@ -170,11 +170,25 @@ class Learning:
             if value is not None:
                 wanted = wanted.where(learning_run.c[column] == value)
         found = self.database.mappings(wanted.order_by(learning_run.c.id))
-        return tuple(map(reading.learning_run, found))
+        return tuple(self.database.readable(reading.learning_run, found))
+
+    def tools(self) -> frozenset[str]:
+        """Return the names of the tools with a finished run that stands for itself."""
+        wanted = sa.select(learning_run.c.tool).where(
+            used_in(None), learning_run.c.status == "done"
+        )
+        with self.database.reading() as connection:
+            return frozenset(connection.scalars(wanted))
 
     def latest(self, tool: str) -> LearningRunInfo | None:
-        """Return the finished run of `tool` that was begun last, no part of a reproduction."""
-        return next(reversed(self.runs(tool=tool, status="done")), None)
+        """Return the finished run of `tool` that was begun last, no part of a reproduction.
+
+        Raises:
+            DatabaseError: it cannot be read; an older one does not take its place.
+        """
+        wanted = selected_runs().where(used_in(None)).filter_by(tool=tool, status="done")
+        found = self.database.mappings(wanted.order_by(learning_run.c.id.desc()).limit(1))
+        return reading.learning_run(found[0]) if found else None
 
     def table(
         self, run_id: int, *, as_learned: bool = False

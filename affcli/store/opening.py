@@ -1,7 +1,7 @@
 """Opening a database: made or migrated if it must be, and checked before anything is read."""
 
 import sqlite3
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -68,6 +68,11 @@ class Store:
     def path(self) -> Path:
         """The file."""
         return self.database.path
+
+    @property
+    def left_out(self) -> Sequence[str]:
+        """What is to be said of records that lists left out, because they cannot be read."""
+        return tuple(self.database.left_out)
 
     @contextmanager
     def turn(self) -> Iterator[None]:

@@ -34,12 +34,19 @@ Columns = Mapping[str, Any]
 """A row by the names of its columns."""
 
 
+class UnreadableError(DatabaseError):
+    """A record holds a value that no version of affcli writes."""
+
+
 @contextmanager
 def reading_what_was_written(place: str) -> Iterator[None]:
     """Say so when a value in the database is one that no version of affcli writes.
 
     Args:
         place: which record, for the message.
+
+    Raises:
+        UnreadableError: it is; lists leave the record out and name it (`Database.readable`).
     """
     try:
         yield
@@ -51,7 +58,7 @@ def reading_what_was_written(place: str) -> Iterator[None]:
         OverflowError,
         BadInputError,
     ) as error:
-        raise DatabaseError(
+        raise UnreadableError(
             f"{place} holds a value that affcli did not write; restore a copy of the database"
         ) from error
 

@@ -39,11 +39,11 @@ class Sessions:
             return insert_one(connection, session, rows.session_row(spec, versions, now))
 
     def all(self, *kinds: str) -> tuple[SessionInfo, ...]:
-        """Return the sessions, all or of some kinds, oldest first."""
+        """Return the sessions that can be read, all or of some kinds, oldest first."""
         wanted = sa.select(session).order_by(session.c.id)
         if kinds:
             wanted = wanted.where(session.c.kind.in_(kinds))
-        return tuple(map(reading.session, self.database.mappings(wanted)))
+        return tuple(self.database.readable(reading.session, self.database.mappings(wanted)))
 
     def one(self, number: int) -> SessionInfo:
         """Return a session.

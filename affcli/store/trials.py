@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import sqlalchemy as sa
 
@@ -9,7 +10,7 @@ from affcli.core.affordance import PROBABILITY_THRESHOLD
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.records import StepScene, StoredStep, TrialInfo
 from affcli.core.replay import Difference
-from affcli.core.specs import Counters, Protocol, TrialRecord
+from affcli.core.specs import Counters, LearningSpec, Protocol, TrialRecord
 from affcli.core.trial import TrialEnd, TrialStep
 from affcli.errors import UsageError
 from affcli.store import reading, rows
@@ -76,14 +77,21 @@ class Trials:
     def trials(
         self, *, session_id: int | None = None, run_id: int | None = None, kind: str | None = None
     ) -> tuple[TrialInfo, ...]:
-        """Return the trials of a session, of a learning run, of sessions of a kind, or all."""
+        """Return the trials of a session, of a learning run, of sessions of a kind, or all.
+
+        Those that cannot be read are left out, and those that used a run which cannot be read.
+        """
         named = ((trial.c.session_id, session_id), (trial.c.learning_run_id, run_id))
         chosen = [column == value for column, value in named if value is not None]
         if kind is not None:
             of_kind = sa.select(session.c.id).where(session.c.kind == kind)
             chosen.append(trial.c.session_id.in_(of_kind))
         with self.database.reading() as connection:
-            return _infos(connection, *chosen)
+            learned = dict(self.database.readable(_learned, _used_runs(connection, *chosen)))
+            found = [
+                row for row in _found(connection, *chosen) if row["learning_run_id"] in learned
+            ]
+        return tuple(self.database.readable(lambda row: reading.trial(row, learned), found))
 
     def first_broken(self, session_id: int) -> TrialInfo | None:
         """Return the first trial of a session with a broken tool; None if it has none."""
@@ -281,8 +289,25 @@ def insert_trials(
 
 def _infos(connection: sa.Connection, *conditions: sa.ColumnElement[bool]) -> tuple[TrialInfo, ...]:
     """Return the trials for which all conditions hold, oldest first."""
+    learned = dict(map(_learned, _used_runs(connection, *conditions)))
+    return tuple(reading.trial(row, learned) for row in _found(connection, *conditions))
+
+
+def _learned(row: reading.Columns) -> tuple[int, LearningSpec]:
+    """Return what a learning run is a function of, by its number."""
+    return row["id"], reading.learning_run(row).spec
+
+
+def _used_runs(
+    connection: sa.Connection, *conditions: sa.ColumnElement[bool]
+) -> list[dict[str, Any]]:
+    """Return the rows of the learning runs whose tables were used in some trials."""
     used = sa.select(trial.c.learning_run_id).where(*conditions)
-    runs = mappings(connection, selected_runs().where(learning_run.c.id.in_(used)))
+    return mappings(connection, selected_runs().where(learning_run.c.id.in_(used)))
+
+
+def _found(connection: sa.Connection, *conditions: sa.ColumnElement[bool]) -> list[dict[str, Any]]:
+    """Return the rows of some trials, oldest first."""
     wanted = (
         sa.select(trial, session.c.versions, tool.c.definition)
         .select_from(
@@ -293,6 +318,4 @@ def _infos(connection: sa.Connection, *conditions: sa.ColumnElement[bool]) -> tu
         .where(*conditions)
         .order_by(trial.c.id)
     )
-    found = mappings(connection, wanted)
-    learned = {row["id"]: reading.learning_run(row).spec for row in runs}
-    return tuple(reading.trial(row, learned) for row in found)
+    return mappings(connection, wanted)

@@ -23,12 +23,14 @@ WRITERS: tuple[Args, ...] = (
     ("verify", "--update", "--rows", "12", "--shape", "TOOL", "--seed", "SEED"),
     ("reproduce", "--seed", "SEED", "--robots", "2", "--workers", "1", "--config", "settings.toml"),
     ("reproduce", "--resume", "--workers", "1"),
+    ("experiment", "two.toml", "--workers", "1"),
+    ("db", "merge", "other.db"),
     ("db", "backup", "--out", "copy.db", "--force"),
     ("db", "upgrade"),
 )
 """What writes into a database, or a copy of it; `db upgrade` is given one of an older schema."""
 WRITING = {"learn", "solve", "break-tool", "reproduce", "db upgrade", "db backup"}
-WRITING |= {"experiment", "runs note", "runs delete"}
+WRITING |= {"experiment", "runs note", "runs delete", "db merge"}
 OF_TWO = {"compare", "figure compare"}
 """What needs two conditions of one seed, which the database under attack has not."""
 MOST_READ = {"figure", "report", "replay"}
@@ -161,6 +163,11 @@ def plainly(command: Command) -> Args:
     """Return a call of a command with which it does what it is for."""
     out = ("--out", "new.svg", "--force") if "--out" in command.needed else ()
     return (*command.words, *NEED.get(command.name, out))
+
+
+def in_database(args: Args, name: str) -> Args:
+    """Return a command with the database it works in."""
+    return (*args, "--into" if args[:2] == ("db", "merge") else "--db", name)
 
 
 def has_database(command: Command) -> bool:

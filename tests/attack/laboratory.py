@@ -12,7 +12,17 @@ from threading import Thread
 
 import numpy as np
 
-from tests.attack.attacks import OF_TWO, WRITING, Args, Attack, drawn, has_database, named, plainly
+from tests.attack.attacks import (
+    OF_TWO,
+    WRITING,
+    Args,
+    Attack,
+    drawn,
+    has_database,
+    in_database,
+    named,
+    plainly,
+)
 from tests.attack.checks import (
     LASTING,
     check_end,
@@ -84,7 +94,7 @@ class Laboratory:
         if name == OLDER:
             olds = sorted(OLD_DATABASES.glob("*.db"))
             shutil.copyfile(olds[chance.integers(len(olds))], database)
-        before, args = contents(database), (*attack.args, "--db", name)
+        before, args = contents(database), in_database(attack.args, name)
         journals = self._journals()  # one that need not be rolled back stays till the next write
         ended = self._attacked(attack, args, database)
         check_end(attack, ended)

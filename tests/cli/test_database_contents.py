@@ -134,8 +134,11 @@ def test_a_value_that_cannot_be_is_worked_with_or_named(change: str, small: Path
 def test_a_run_that_cannot_be_read_is_named_and_others_are_shown(column: str, used: Path) -> None:
     tamper(used, f"UPDATE learning_run SET {column} = '{{' WHERE id = 2")
     named = "affcli: learning run 2 holds a value that affcli did not write; restore a copy of the"
-    for line in ("report", "table list", "table list --run 2", "replay --run 2", "solve --goal 2"):
+    for line in ("table list", "table list --run 2", "replay --run 2", "solve --goal 2"):
         assert refused(3, *line.split(), "--db", used).startswith(named)
+    for line in ("report", "runs list", "report --html new.html"):
+        shown = done(*line.split(), "--db", used, cwd=used.parent)
+        assert f"left out: {named[8:]}" in " ".join(shown.err.splitlines()), shown
     for line in (
         *("table list --run 1", "table show 1", "replay --run 1 --steps 1", "predict --pushes 2"),
         *(

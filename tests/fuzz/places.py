@@ -11,9 +11,7 @@ from affcli.store import open_store
 from tests.cli.program import done
 from tests.factories import learning_spec
 from tests.lab.quick import NOW
-
-SETTINGS = "[motion]\nhold = 60.0\n[trial]\nmax_steps = 4\n"
-"""An hour holds some thirty behaviors, and trials are given up soon."""
+from tests.states.commands import EXPERIMENT, SETTINGS
 
 
 def furnish(folder: Path) -> None:
@@ -37,6 +35,8 @@ def furnish(folder: Path) -> None:
     run("reproduce", "--robots", "1", "--workers", "1", "--config", settings)
     run("reproduce", "--robots", "1", "--seed", "1", "--workers", "1", "--config", settings)
     interrupt(filled)
+    (folder / "two.toml").write_text(EXPERIMENT)
+    done("experiment", "two.toml", "--workers", "1", "--db", folder / "other.db", cwd=folder)
     done("learn", "--tool", "stick", "--behaviors", "1", "--db", folder / "empty.db")
     done("camera", "calibrate", "--out", folder / "calibration.json")
     done("camera", "view", "--pattern", "--frame", "--out", folder / "pattern.png")
