@@ -17,6 +17,7 @@ from affcli.planning import nested_query, prediction
 from affcli.simulation.table_world import TableWorld
 from affcli.simulation.worlds import TABLE_VERSION
 
+TURNING = ("turn-wrist", "turn-and-pull", "turn-and-slide")
 MOVING = ("extend-arm", "contract-arm", "slide-arm-left", "slide-arm-right")
 SETTINGS = {
     "arm.elbow_max_degrees": 146.0,
@@ -117,12 +118,17 @@ LIMITS = {
     "motion.regrasp_time": (0.0, LARGEST),
     "physics.collision_slop": (1e-9, LARGEST),
     "physics.overlap_mended": (1e-6, 1.0),
+    "puck.mass_direction_degrees": (-360.0, 360.0),
+    "puck.mass_offset": (0.0, 1.0 / 3.0),
     "sensor.color_noise": (0.0, 255.0),
     "sensor.position_noise": (0.0, 10.0),
     "tools.handle_below_grasp": (0.0, LARGEST),
     "bindings: grasp: angle": (-180.0, 180.0),
     "bindings: grasp: grasp_point": (0.0, 100.0),
     **{f"behaviors: {name}: offset_distance": (0.1, 20.0) for name in MOVING},
+    **{f"behaviors: {name}: angle": (-180.0, 180.0) for name in TURNING},
+    **{f"behaviors: {name}: distance": (0.1, 20.0) for name in TURNING[1:]},
+    "behaviors: turn-and-slide: direction": (-360.0, 360.0),
     "planners: nested-query: angle_degrees": (1.0, 180.0),
     "planners: nested-query: share": (0.001, 1.0),
     "planners: nested-query: threshold": (0.0, 0.999),
