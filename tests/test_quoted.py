@@ -118,6 +118,8 @@ LIMITS = {
     "motion.regrasp_time": (0.0, LARGEST),
     "physics.collision_slop": (1e-9, LARGEST),
     "physics.overlap_mended": (1e-6, 1.0),
+    "puck.mass_direction_degrees": (-360.0, 360.0),
+    "puck.mass_offset": (0.0, 1.0 / 3.0),
     "sensor.color_noise": (0.0, 255.0),
     "sensor.position_noise": (0.0, 10.0),
     "tools.handle_below_grasp": (0.0, LARGEST),
