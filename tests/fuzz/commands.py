@@ -25,6 +25,7 @@ PLAUSIBLE: dict[str, tuple[str, ...]] = {
     "ID": ("1", "2", "3", "40"),
     "TRIAL": ("1", "2", "3", "40"),
     "ROW": ("1", "2", "3", "40"),
+    "STEP": ("1", "2", "40"),
     "NAME": (*TOOLS, "right hook", "extend arm", "extend arm 5"),
     "KIND": ("noisy", "exact", "camera", "csv", "json", "parquet", "rows", "behaviors", "steps"),
     "FILE": FILES,
