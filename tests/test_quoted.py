@@ -158,7 +158,6 @@ LIMITS = {
         for name in registry.parts("planners")
     },
     "puck.mass_direction": (-360.0, 360.0),
-    "puck.mass_offset": (0.0, 1.0 / 3.0),
     "tasks: anywhere: half_width": (0.1, 10.0),
     "tasks: anywhere: n": (1, 1000),
     "tasks: anywhere: seed": (0, 2**63 - 1),

@@ -157,7 +157,7 @@ class Learning:
     def runs(
         self, *, tool: str | None = None, session_id: int | None = None, status: str | None = None
     ) -> tuple[LearningRunInfo, ...]:
-        """Return the stored runs that can be read, oldest first.
+        """Return the stored runs that can be read, oldest first; DatabaseError if none of them can.
 
         Args:
             tool: only those of this tool.
@@ -170,7 +170,10 @@ class Learning:
             if value is not None:
                 wanted = wanted.where(learning_run.c[column] == value)
         found = self.database.mappings(wanted.order_by(learning_run.c.id))
-        return tuple(self.database.readable(reading.learning_run, found))
+        runs = tuple(self.database.readable(reading.learning_run, found))
+        if found and not runs:
+            reading.learning_run(found[0])  # says why there is none
+        return runs
 
     def tools(self) -> frozenset[str]:
         """Return the names of the tools with a finished run that stands for itself."""
