@@ -200,6 +200,7 @@ def uneven_law(friction: float, offset: float, angles: int = 24, forces: int = 9
     )
     found = np.zeros((len(f), 2))
     found[:, 0] = f[:, 0]
+    step = np.full_like(found, np.inf)
     for _ in range(100):
         velocity = np.einsum("npvc,nv->npc", slopes, found)
         velocity[..., 0] += 1.0
