@@ -341,8 +341,8 @@ def test_a_trial_that_cannot_be_done_again_is_left_out_with_the_reason(
     before = store.path.read_bytes()
     for statement, says in (
         (
-            "UPDATE trial SET planner = 'oracle:depth=2' WHERE id = 1",
-            "planner oracle:depth=2: this affcli has no such part",
+            "UPDATE trial SET planner = 'clairvoyant:depth=2' WHERE id = 1",
+            "planner clairvoyant:depth=2: this affcli has no such part",
         ),
         ("UPDATE trial SET shape_key = NULL WHERE id = 1", "does not know what a t-hook looks"),
         ("UPDATE trial SET world = 'table@7' WHERE id = 1", "made in version 7 of the world"),

@@ -145,9 +145,9 @@ def test_one_start_alone(store: Store, run: LearningRunInfo) -> None:
         (
             "1",
             ALL_STARTS,
-            Component("oracle"),
+            Component("clairvoyant"),
             BadInputError,
-            "planner oracle: this affcli has no such",
+            "planner clairvoyant: this affcli has no such",
         ),
         ("1", ALL_STARTS, replace(NARROW, version=3), BadInputError, "version 1 of it"),
     ],
