@@ -92,6 +92,7 @@ def demo(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (folder / "noise.toml").write_text(code)
     for code in blocks(EXPERIMENTS, "toml"):
         (folder / "share.toml").write_text(code)
+    done("new", "tool", "rake", cwd=folder)
     for name in ("a.db", "b.db", "shard1.db", "shard2.db"):
         shutil.copy(folder / "demo.db", folder / name)
     (folder / "experiments").symlink_to(ROOT / "experiments")
@@ -132,7 +133,7 @@ def workplace(demo: Path, tmp_path: Path, with_examples: None) -> Path:
 def ran(command: str, workplace: Path) -> str:
     """Run a command of a README, a long one with less to do; return all that it wrote."""
     words = shlex.split(command.replace(".venv/bin/", ""))[1:]
-    if "--out" in words or "--html" in words:
+    if "--out" in words or "--html" in words or words[0] == "new":
         words += ["--force"] if "--force" in help_of(" ".join(words_of(command))) else []
     if words[0] == "experiment" and words[1].startswith("experiments/"):
         words += ["--dry-run"]
@@ -162,6 +163,7 @@ def is_whole(command: str) -> bool:
         return needed in given
     incomplete = {
         ("compare",),
+        ("experiment",),
         ("power",),
         ("replay",),
         ("sql",),
