@@ -126,8 +126,6 @@ def learn(
         settings, repertoire=repertoire or (), binding=binding, explorer=explorer, world=world
     )
     specs = [parts.spec(name, seed, 0, hours, behaviors) for name in names]
-    for words in filter(None, map(lab.run_parts.beyond_the_box, specs)):
-        say(words)
     with opened(database, create=bool(names), write=True) as store:
         if not names:
             specs = lab.learning.interrupted(store)
@@ -136,6 +134,8 @@ def learn(
         runs, stuck = _begun(store, specs, note, all_or_none=bool(names))
         done = _learned(store, runs, workers)
         found = [(run, store.results.behavior_groups(run.id)) for run in done]
+    for words in filter(None, (lab.run_parts.beyond_the_box(run.spec) for run in done)):
+        say(words)
     new = {run.id for run in runs if run.status != "done"}
     show_either(
         as_json=as_json,
