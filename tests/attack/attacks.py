@@ -31,8 +31,8 @@ WRITERS: tuple[Args, ...] = (
 """What writes into a database, or a copy of it; `db upgrade` is given one of an older schema."""
 WRITING = {"learn", "solve", "break-tool", "reproduce", "db upgrade", "db backup"}
 WRITING |= {"experiment", "runs note", "runs delete", "db merge"}
-OF_TWO = {"compare", "figure compare"}
-"""What needs two conditions of one seed, which the database under attack has not."""
+NOT_THERE = {"compare", "figure compare", "figure plan"}
+"""What needs two conditions of one seed, or a plan, which the database under attack has not."""
 MOST_READ = {"figure", "report", "replay"}
 """Half of what is drawn of all commands begins so: it reads most of a database."""
 BY_WORD = {"--robots": ("1", "2"), "--workers": ("1",), "--speed": ("1000",)}
@@ -153,6 +153,7 @@ NEED: dict[str, Args] = {
     "runs delete": ("2", "--yes"),
     "experiment": ("two.toml", "--workers", "1"),
     "figure row": ("1", "--out", "new.svg", "--force"),
+    "figure plan": ("1", "1", "--out", "new.svg", "--force"),
     "figure trial": ("1", "--out", "new.svg", "--force"),
     "figure prediction": ("--pushes", "3", "--out", "new.svg", "--force"),
 }

@@ -13,7 +13,7 @@ from threading import Thread
 import numpy as np
 
 from tests.attack.attacks import (
-    OF_TWO,
+    NOT_THERE,
     WRITING,
     Args,
     Attack,
@@ -212,6 +212,6 @@ def readers() -> tuple[list[Args], list[Args]]:
     quick: list[Args] = []
     slow = [*MORE]
     for command in named():
-        if has_database(command) and command.name not in WRITING | OF_TWO:
+        if has_database(command) and command.name not in WRITING | NOT_THERE:
             (quick if command.name in QUICK else slow).append(plainly(command))
     return quick, slow
