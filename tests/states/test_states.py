@@ -42,7 +42,7 @@ NAMED = {
 """What `db check` says of a state: what is unfinished there."""
 
 
-SHARE = 6
+SHARE = 12
 """Of the calls of a command but its first, one in so many reads a state, another one each."""
 
 
