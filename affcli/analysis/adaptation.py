@@ -48,6 +48,7 @@ class AdaptationCourse:
 
     Args:
         session: whose trials they are.
+        robots: how many robots did them.
         tool, shape: what the robots believed to hold, and what it was.
         trials: with the broken tool.
         shares: of the broken tool's trials, by step number.
@@ -57,6 +58,7 @@ class AdaptationCourse:
     """
 
     session: SessionInfo
+    robots: int
     tool: str
     shape: str
     trials: int
@@ -80,7 +82,8 @@ class AdaptationCourse:
         last = shares[-1].number if shares else 0
         trials = sum(group.trials for group in broken)
         with_broken, with_whole = (probabilities_of(groups, last) for groups in (broken, whole))
-        return cls(session, tool, shape, trials, shares, with_broken, with_whole, run)
+        robots = len(broken) if run is None else 1
+        return cls(session, robots, tool, shape, trials, shares, with_broken, with_whole, run)
 
 
 def shares_of(groups: Sequence[TrialGroup]) -> tuple[Share, ...]:

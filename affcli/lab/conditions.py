@@ -26,26 +26,40 @@ BY: dict[str, tuple[str, ...]] = {
 
 
 class Condition(NamedTuple):
-    """A condition by its name, and the session in which its trials are."""
+    """A condition by its name, the session in which its trials are, and how many robots lived."""
 
     name: str
     session: SessionInfo
+    robots: int
 
 
 def sessions_named(store: Store, numbers: Sequence[int]) -> list[Condition]:
-    """Return sessions as conditions, each named by its number.
+    """Return sessions as conditions.
+
+    Each has the name that its experiment gives it; where it has none, or another one has the same,
+    its number is its name, or stands beside it.
 
     Raises:
         UsageError: one is not there, not finished or of another kind; or one comes twice.
     """
-    found = []
-    for number in numbers:
-        session = finished_session(store, number, LIVES)
-        if session is not None:
-            found.append(Condition(f"session {session.id}", session))
     for number in repeated(numbers):
         raise UsageError(f"--session {number}: named twice; name another one")
+    sessions = [finished_session(store, number, LIVES) for number in numbers]
+    given = [one.condition for one in sessions if one is not None]
+    found = []
+    for session in filter(None, sessions):
+        by_number, own = f"session {session.id}", session.condition
+        name = by_number
+        if own is not None:
+            name = own if given.count(own) == 1 else f"{own} ({by_number})"
+        found.append(condition_of(store, name, session))
     return found
+
+
+def condition_of(store: Store, name: str, session: SessionInfo) -> Condition:
+    """Return a session as a condition."""
+    failed = store.sessions.failed_robots(session.id)
+    return Condition(name, session, session.spec.robots - len(failed))
 
 
 def repeated(values: Sequence[T]) -> list[T]:
@@ -63,7 +77,7 @@ def experiment_named(store: Store, name: str) -> list[Condition]:
     found = store.experiments.named(name)
     if found.status != "done":
         raise UsageError(f"experiment {name!r} is not finished; go on: affcli experiment --resume")
-    return [Condition(one, sessions[number]) for one, number in found.conditions]
+    return [condition_of(store, one, sessions[number]) for one, number in found.conditions]
 
 
 def compared(

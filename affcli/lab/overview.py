@@ -8,7 +8,7 @@ from affcli.analysis.paired import Comparison, in_common
 from affcli.analysis.reproduction import Reproduction, failures_in
 from affcli.core.records import ExperimentInfo, LearningRunInfo
 from affcli.core.specs import Protocol
-from affcli.lab.conditions import Condition, counts_of
+from affcli.lab.conditions import condition_of, counts_of
 from affcli.store import Store
 
 
@@ -86,7 +86,7 @@ def _comparison(store: Store, one: ExperimentResult) -> Comparison | None:
     None where no other did the same tasks.
     """
     sessions = {session.id: session for session in store.sessions.all()}
-    first, *others = (Condition(c.name, sessions[c.session]) for c in one.results)
+    first, *others = (condition_of(store, c.name, sessions[c.session]) for c in one.results)
     base = counts_of(store, first)
     every = [counts_of(store, other) for other in others]
     alike = [c for c in every if in_common(base, c) and base.cells.keys() & c.cells.keys()]

@@ -18,7 +18,7 @@ from affcli.lab.predicting import predict, prediction_spec
 from affcli.lab.replaying import replay_trial
 from affcli.report import figures
 from affcli.report.page.content import Broken, Content, LearnedRows
-from affcli.report.words import experiment_words, in_order
+from affcli.report.words import in_order
 from affcli.store import Store
 
 MOST_ROBOTS = 5
@@ -87,9 +87,14 @@ def content_of(
     tools = [_with_predictions(store, _learned(store, run)) for run in shown.filmed]
     others = [replace(_learned(store, run), filmed=False) for run in shown.others]
     every = [*shown.filmed, *shown.others]
+    made = shown.filmed[-1] if shown.filmed else store.experiments.all()[-1]
     timed = [run for run in every if run.robot_seconds > 0.0]
     experiments = experiments_of(store)
-    bands = [] if every[0].session_id is None else curves_of_robots(store, every[0].session_id)[1]
+    bands = (
+        curves_of_robots(store, every[0].session_id)[1]
+        if every and every[0].session_id is not None
+        else []
+    )
     return Content(
         database=one_line(store.path.name),
         robot=shown.name,
@@ -99,7 +104,7 @@ def content_of(
         not_replayed=not_replayed,
         left_out=shown.left_out,
         broken=_broken(tools, replays),
-        versions={one_line(k): one_line(v) for k, v in shown.filmed[-1].versions.items()},
+        versions={one_line(k): one_line(v) for k, v in made.versions.items()},
         others=shown.their_trials,
         curves={curve.run.id: curve for curve in curves_of(store, timed)} if timed else {},
         bands={one.tool: one for one in bands},
@@ -194,9 +199,8 @@ def _of_many(store: Store, robots: Sequence[int], of: SessionInfo | None) -> _Sh
                 f"nothing learned in {where} yet: run {', '.join(begun)} is not finished; go on "
                 "with the command that began it"
             )
-        if experiments := experiments_of(store):
-            words = "; ".join(map(experiment_words, experiments))
-            raise UsageError(f"no learning run or reproduction for a page in {where}; {words}")
+        if named := ", ".join(one_line(one.name) for one in experiments_of(store)):
+            return _Shown(f"the results of {named}: not all of its robots is kept", (), (), (), ())
         raise UsageError(f"nothing learned in {where}; first run: affcli learn --tool t-hook")
     runs: dict[int, list[LearningRunInfo]] = {}
     for run in store.learning.runs(session_id=of.id):

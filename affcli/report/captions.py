@@ -148,7 +148,7 @@ def adaptation_words(course: AdaptationCourse) -> Words:
 
     Over one robot's trials there are some.
     """
-    robots = course.session.spec.robots
+    robots = course.robots
     return Words(
         f"Adaptation: {broken_words(course.tool, course.shape)}",
         joined(
@@ -178,7 +178,10 @@ def comparison_words(result: Comparison) -> Words:
     return Words(
         comparison_title(result),
         joined(
-            *(condition_name(one.name, one.session) for one in (result.against, *result.others)),
+            *(
+                condition_name(one.name, one.session, len(one.robots))
+                for one in (result.against, *result.others)
+            ),
             f"not drawn: {many(len(result.same), 'cell')} the same in all robots"
             if result.same
             else "",
@@ -186,29 +189,31 @@ def comparison_words(result: Comparison) -> Words:
     )
 
 
-def conditions_words(what: str, conditions: Sequence[tuple[str, SessionInfo]]) -> Words:
+def conditions_words(what: str, conditions: Sequence[tuple[str, SessionInfo, int]]) -> Words:
     """Return a title, and which conditions it is of."""
     return Words(what, joined(*(condition_name(*one) for one in conditions)))
 
 
 def experiment_words(
-    what: str, name: str, conditions: Sequence[tuple[str, SessionInfo]], tools: Sequence[str]
+    what: str, name: str, conditions: Sequence[tuple[str, SessionInfo, int]], tools: Sequence[str]
 ) -> Words:
     """Return a title, and of which experiment and robots it is; the key names the conditions."""
-    sessions = [session for _, session in conditions]
+    sessions = [session for _, session, _ in conditions]
     spec, differences = sessions[0].spec, {differing(session.spec) for session in sessions}
+    # A robot that failed is in no condition.
+    robots = conditions[0][2]
     return Words(
         what,
         joined(
             f"experiment {name}, sessions {sessions[0].id} to {sessions[-1].id}",
-            f"{many(spec.robots, 'robot')}, seed {spec.seed}",
+            f"{many(robots, 'robot')}, seed {spec.seed}",
             ", ".join(map(tool_words, tools)),
             *(differences if len(differences) == 1 else ()),
         ),
     )
 
 
-def condition_name(name: str, session: SessionInfo) -> str:
+def condition_name(name: str, session: SessionInfo, robots: int) -> str:
     """Return a condition with what makes it: its session, robots, seed, what is not default."""
-    caption = session_caption(session, session.spec.robots)
+    caption = session_caption(session, robots)
     return caption if caption.startswith(name) else f"{name}: {caption}"

@@ -147,10 +147,13 @@ def total_words(cell: Cell, cells: Sequence[Cell]) -> str:
 
 
 def whole_words(cell: Cell) -> str:
-    """Return a cell in one line: ``t-hook as l-hook, goal 1``; a protocol if it is all of one."""
+    """Return a cell in one line: ``t-hook as l-hook, goal 1``; a protocol if it is all of one.
+
+    The tasks are named where they are not the paper's.
+    """
     goal, start = (f"{n} {v}" if v else "" for n, v in (("goal", cell.goal), ("start", cell.start)))
-    words = ", ".join(filter(None, (held_words(cell), goal, start)))
-    return one_line(words or cell.protocol, 60)
+    words = ", ".join(filter(None, (held_words(cell), goal, start))) or cell.protocol
+    return one_line(words if cell.task_set == TASK_SET else f"{words}, {cell.task_set}", 60)
 
 
 def signed(value: float) -> str:

@@ -68,15 +68,14 @@ def test_a_single_step_asks_nothing(used: Path) -> None:
 
 
 def test_behaviors_are_gone_through_one_by_one(learned: Path) -> None:
-    run = ("--run", "1", "--steps", "2-4")
-    code, shown = played(*run, database=learned, answers=[(NEXT, "\n"), (NEXT, "\n")])
+    run = ("--run", "1", "--steps", "2-3")
+    code, shown = played(*run, database=learned, answers=[(NEXT, "\n")])
     assert code == 0
-    assert prompts(shown) == ["Enter: the next"] * 2
-    assert shown.endswith("run 1: the replay equals the record, the first 4 behaviors\n")
-    for leave in ("q\n", CTRL_D):
-        code, shown = played("--run", "1", database=learned, answers=[(NEXT, leave)])
-        assert code == 0
-        assert shown.endswith("run 1: the replay equals the record, the first one behavior\n")
+    assert prompts(shown) == ["Enter: the next"]
+    assert shown.endswith("run 1: the replay equals the record, the first 3 behaviors\n")
+    code, shown = played("--run", "1", database=learned, answers=[(NEXT, "q\n")])
+    assert code == 0
+    assert shown.endswith("run 1: the replay equals the record, the first one behavior\n")
 
 
 @pytest.mark.parametrize("can_type", [True, False])
@@ -119,7 +118,7 @@ def test_a_dumb_terminal_gets_each_step_once(used: Path) -> None:
     assert titles_in(shown) == [1, 2]
 
 
-@pytest.mark.parametrize("columns", [20, 40, 72, 80, 200])
+@pytest.mark.parametrize("columns", [20, 80, 200])
 def test_on_a_terminal_nothing_is_wider_than_it(columns: int, used: Path) -> None:
     code, shown = played(
         *(SOLVED, "--steps", "1-2"),

@@ -148,7 +148,8 @@ def test_progress_is_for_terminals_only(tmp_path: Path) -> None:
     code, shown = on_terminal(*LEARN, "--db", tmp_path / "a.db")
     assert code == 0
     plain = ESCAPE.sub("", shown)
-    assert re.search(r"\rstick ━\S* \d+ min \d+ s, \d+ behaviors, \d+ rows?, \d+ resets?", plain)
+    clock = r"(\d+ h )?\d+ min( \d+ s)?"
+    assert re.search(rf"\rstick ━\S* {clock}, \d+ behaviors, \d+ rows?, \d+ resets?", plain)
     ended = executed(*LEARN, "--db", tmp_path / "b.db")
     assert "━" not in ended.err
     assert len(ended.err.splitlines()) == 1

@@ -13,7 +13,8 @@ from affcli.lab.courses import curves_of
 from affcli.report.paired import comparison_tables
 from affcli.store import Store
 from affcli.store.columns import COLUMNS
-from affcli.store.tables import learning_run, trial
+from affcli.store.connection import insert_one
+from affcli.store.tables import experiment, learning_run, session, trial
 from tests.store.conditions import SECOND, stored_conditions
 from tests.store.records import NOW, begun
 
@@ -83,6 +84,29 @@ def test_robots_are_compared_with_the_first_condition_or_with_one_that_is_named(
     assert [(d.condition, d.worse) for d in again.cells] == [("session 1", 4), ("session 3", 4)]
     with pytest.raises(UsageError, match="no condition 'session 9'; did you mean session"):
         compared(store, conditions, "session 9", ("tool",))
+
+
+def test_sessions_have_the_names_that_their_experiment_gives_them(store: Store) -> None:
+    ids = stored_conditions(store)
+    with store.database.writing() as connection:
+        one, other = (
+            insert_one(
+                connection,
+                experiment,
+                {"name": name, "question": "", "definition": "{}", "key": "k", "versions": "{}"}
+                | {"status": "done", "started_at": NOW},
+            )
+            for name in "ef"
+        )
+        named = ((one, "paper"), (one, "rough"), (other, "rough"))
+        for own, (number, name) in zip(ids, named, strict=True):
+            part = {"experiment_id": number, "condition": name, "kind": "experiment"}
+            connection.execute(sa.update(session).filter_by(id=own).values(**part))
+    names = [one.name for one in sessions_named(store, ids)]
+    assert names == ["paper", "rough (session 2)", "rough (session 3)"]
+    assert [one.name for one in sessions_named(store, ids[:2])] == ["paper", "rough"]
+    store.sessions.save_failure(ids[0], FailedRobot(8, "ValueError", "no", 3), NOW)
+    assert [one.robots for one in sessions_named(store, ids)] == [7, 8, 10]
 
 
 def test_a_robot_with_an_invalid_trial_is_left_out_where_it_was(store: Store) -> None:

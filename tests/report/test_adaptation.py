@@ -162,6 +162,7 @@ def test_the_interval_holds_the_truth_as_often_as_it_says(robots: int) -> None:
 GROUPS = single([(True, -0.1)], [(True, -0.1), (True, -0.1), (False, 0.0)])
 COURSE = AdaptationCourse(
     session=session_of(3, kind="break-tool", robots=1),
+    robots=1,
     tool="t-hook",
     shape="l-hook",
     trials=2,
@@ -200,6 +201,7 @@ def test_without_intervals_there_are_no_bands() -> None:
     few = replace(
         COURSE,
         session=session_of(3, robots=2),
+        robots=2,
         shares=shares_of(groups),
         broken=probabilities_of(groups, 1),
         whole=probabilities_of(groups, 1),

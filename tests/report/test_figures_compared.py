@@ -11,6 +11,7 @@ from matplotlib.text import Text
 
 from affcli.analysis.courses import Course, Line, Point, course_line, swept_line
 from affcli.analysis.paired import Comparison
+from affcli.core.results import ConditionCounts
 from affcli.report.captions import comparison_words
 from affcli.report.figures.canvas import INK, ONE_COLUMN, TWO_COLUMNS, encoded
 from affcli.report.figures.compare import compare_figure
@@ -75,6 +76,28 @@ def test_rows_are_in_the_order_of_the_paper_whichever_condition_differs_first() 
     figure = compare_figure(Comparison.of(BASE, [OTHER_HOOK, changed]))
     labels = [label.get_text() for label in figure.axes[-1].get_yticklabels()]
     assert labels == ["Stick, goal 1", "T-hook, goal 1", "T-hook as L-hook, goal 1"]
+
+
+def test_tasks_that_are_not_the_papers_are_named() -> None:
+    wide, narrow = "anywhere:half_width=2.25", "anywhere:half_width=0.5"
+
+    def both(one: ConditionCounts) -> ConditionCounts:
+        stick = next(iter(one.cells.items()))
+        cells = {stick[0]._replace(task_set=tasks): stick[1] for tasks in (wide, narrow)}
+        return replace(one, cells=cells)
+
+    figure = compare_figure(Comparison.of(both(BASE), [both(OTHER)], ()))
+    labels = [axes.get_yticklabels()[0].get_text() for axes in figure.axes]
+    assert labels == [f"extension of reach, {tasks}, of 4" for tasks in (wide, narrow)]
+
+
+def test_a_caption_counts_the_robots_that_lived() -> None:
+    lived = replace(BASE, cells={c: {0: own[0], 1: own[1]} for c, own in BASE.cells.items()})
+    planned = BASE.session.spec.robots
+    words = comparison_words(Comparison.of(lived, [OTHER])).caption
+    assert words.startswith("paper: session ")
+    assert "(reproduce), 2 robots, seed" in words.split("two moves")[0]
+    assert f"{planned} robots, seed" not in words.split("two moves")[0]
 
 
 def test_marks_of_the_key_are_hollow_but_for_the_significant() -> None:

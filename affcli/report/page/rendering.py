@@ -92,7 +92,7 @@ def render(content: Content, command: str) -> str:
         saving=saving,
         player=player,
         outline=drawings.outline,
-        open_run=[one.run.id for one in content.tools if one.filmed][-1],
+        open_run=next((one.run.id for one in reversed(content.tools) if one.filmed), None),
         robots=robots if len(robots) > 1 else [],
         more_robots=more_robots(content),
         tools=[_tool_section(learned) for learned in content.tools],

@@ -22,7 +22,7 @@ from affcli.simulation.tools.paper import paper_tools
 
 NAME = "anywhere"
 MOST_TASKS = 1_000
-PLACEMENTS = 10_000
+PLACEMENTS = 1_000
 """Places tried for a task before it is called impossible."""
 
 
