@@ -141,11 +141,13 @@ class Comparison:
             if not in_common(against, other):
                 raise ValueError(f"{against.name} and {other.name} have no robot in common")
             before, after = _shared(against.cells, other.cells), _shared(other.cells, against.cells)
-            whole, unpaired = _compared(other.name, summed(before), summed(after))
+            told = summed(before, by), summed(after, by)
+            # Sums of sums: there are far fewer cells than trials.
+            whole, unpaired = _compared(other.name, *map(summed, told))
             totals += whole
             without: set[int] = set()
             if by:
-                found, without = _compared(other.name, summed(before, by), summed(after, by))
+                found, without = _compared(other.name, *told)
                 cells += found
             missing = unpaired | without | (against.robots ^ other.robots)
             if missing:

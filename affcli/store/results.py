@@ -33,8 +33,8 @@ from affcli.store.tables import (
 
 COUNTED = [outcome.value for outcome in Outcome if is_counted(outcome)]
 """How trials end that count."""
-ROBOTS_IN_A_LIST = 1_000
-"""So many numbers are one value of a row, far from what a value may have (affcli.bounded)."""
+ROBOTS_IN_A_LIST = 10
+"""Trials of so many robots are one value of a row, far from what it may have (affcli.bounded)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,40 +101,30 @@ class Results:
         """
         t = trial.c
         names = ["protocol", "task_set", *by]
-        robots = (
-            sa.select(
-                *(t[name] for name in names),
-                t.robot,
-                sa.func.count().label("trials"),
-                sa.func.sum(sa.case((t.outcome == Outcome.SOLVED.value, 1), else_=0)).label(
-                    "solved"
-                ),
-                sa.func.min(t.id).label("first"),
-            )
-            .where(t.session_id == session_id, t.outcome.in_(COUNTED))
-            .group_by(t.robot, *(t[name] for name in names))
-            .subquery()
-        )
-        columns = [robots.c[name] for name in names]
+        columns = [t[name] for name in names]
         # Robots in lists: a row a robot and cell would take three times as long.
-        lists = [sa.func.group_concat(robots.c[n]) for n in ("robot", "trials", "solved")]
-        block = robots.c.robot / sa.literal_column(str(ROBOTS_IN_A_LIST))
+        block = sa.cast(t.robot / sa.literal_column(str(ROBOTS_IN_A_LIST)), sa.Integer)
+        was_solved = sa.cast(t.outcome == Outcome.SOLVED.value, sa.Integer)
+        lists = [sa.func.group_concat(one) for one in (t.robot, was_solved)]
         wanted = (
-            sa.select(sa.func.min(robots.c.first), *lists, *columns)
-            .group_by(sa.cast(block, sa.Integer), *columns)
-            .order_by(sa.func.min(robots.c.robot))
+            sa.select(sa.func.min(t.id), *lists, *columns)
+            .where(t.session_id == session_id, t.outcome.in_(COUNTED))
+            .group_by(block, *columns)
         )
         cells: dict[Cell, dict[int, tuple[int, int]]] = {}
         firsts: dict[Cell, int] = {}
-        for first, *texts, row in (
-            (*one[: 1 + len(lists)], one[1 + len(lists) :]) for one in self._all(wanted)
-        ):
+        for first, robots, solved, *row in self._all(wanted):
             cell = Cell(**dict(zip(names, row, strict=True)))
-            numbers, trials, solved = (map(int, text.split(",")) for text in texts)
-            own = dict(zip(numbers, zip(trials, solved, strict=True), strict=True))
-            cells.setdefault(cell, {}).update(own)
+            own = cells.setdefault(cell, {})
+            for robot, flag in zip(robots.split(","), solved.split(","), strict=True):
+                number = int(robot)
+                before = own.get(number, (0, 0))
+                own[number] = before[0] + 1, before[1] + (flag == "1")
             firsts[cell] = min(first, firsts.get(cell, first))
-        return {cell: cells[cell] for cell in sorted(cells, key=firsts.__getitem__)}
+        return {
+            cell: dict(sorted(cells[cell].items()))
+            for cell in sorted(cells, key=firsts.__getitem__)
+        }
 
     def outcome_counts(self, session_ids: Iterable[int]) -> dict[Outcome, int]:
         """Return how the trials of some sessions ended, counted by kind of end."""
