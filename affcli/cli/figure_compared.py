@@ -43,7 +43,10 @@ def curve(
     experiment: Experiment = None,
     sessions: Sessions = None,
     y: Annotated[
-        str, typer.Option("--y", help="solved, rows or share.", metavar="MEASURE")
+        str,
+        typer.Option(
+            "--y", help="solved, steps, seconds, error, rows or share.", metavar="MEASURE"
+        ),
     ] = "solved",
     x: Annotated[
         str | None,
@@ -57,11 +60,12 @@ def curve(
 ) -> Figure:
     """Draw a measure of conditions against robot time, rows or a swept setting.
 
-    Solved trials, rows of a table, or the share of behaviors with an effect; the mean of the robots
-    with its 95 % interval. Rows and share are followed over minutes or rows; solved trials are a
-    mark for each condition there, joined along minutes with those whose names differ in minutes
-    alone. Against a setting each condition is a point, joined with those that differ in nothing
-    else.
+    Of trials: solved ones; steps or robot seconds of a solved one; the error of a step, which is
+    how far it left the puck from where its row said. Of learning: rows of a table, or the share of
+    behaviors with an effect. Drawn is the mean of the robots with its 95 % interval. Rows and share
+    are followed over minutes or rows; what is of trials is a mark for each condition there, joined
+    along minutes with those whose names differ in minutes alone. Against a setting each condition
+    is a point, joined with those that differ in nothing else.
     """
     with opened(database) as store:
         conditions = conditions_named(store, experiment, sessions, 1)

@@ -3,22 +3,32 @@
 import json
 import math
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from affcli.analysis.courses import Course, Line, course_line, swept_line
 from affcli.analysis.curves import INTERVALS, Curve
 from affcli.analysis.paired import all_tried, summed
+from affcli.analysis.paper import TASK_SET
 from affcli.config import known_settings
 from affcli.core.names import one_of
 from affcli.core.records import LearningRunInfo
+from affcli.core.results import Cell
 from affcli.errors import UsageError
 from affcli.lab.conditions import Condition, repeated
 from affcli.lab.run_parts import settings_of
 from affcli.store import Store
 
-MEASURES = {
+OF_TRIALS = {
     "solved": "solved trials",
+    "steps": "steps of a solved trial",
+    "seconds": "robot seconds of a solved trial",
+    "error": "error of a step (in)",
+}
+"""What trials say of a condition: counted, or the mean of each robot. The error of a step is how
+far it left the attractor from where its row said."""
+MEASURES = {
+    **OF_TRIALS,
     "rows": "rows of a table",
     "share": "share of behaviors with an effect",
 }
@@ -59,11 +69,12 @@ def curves_of(
     swept = _swept(conditions)
     x = x or (swept[0] if len(swept) == 1 else "minutes")
     places = _sweeps(conditions, x) if x not in TIME else []
-    by_end = y == "solved" and x == "minutes"
+    of_trials = y in OF_TRIALS
+    by_end = of_trials and x == "minutes"
     courses = (
-        [] if by_end or (y == "solved" and places) else [_courses(store, one) for one in conditions]
+        [] if by_end or (of_trials and places) else [_courses(store, one) for one in conditions]
     )
-    if y != "solved" and not places:
+    if not of_trials and not places:
         lines = [
             course_line(one.name, list(own.values()), y, x)
             for one, own in zip(conditions, courses, strict=True)
@@ -78,19 +89,15 @@ def curves_of(
     ]
     sweeps: dict[tuple[str, float, str], dict[float, Sequence[float]]] = defaultdict(dict)
     for number, (condition, (name, place)) in enumerate(zip(conditions, places, strict=True)):
-        if y == "solved":
-            every = store.results.solved_by_cell(condition.session.id, ("tool",))
-            cells = {cell: own for cell, own in every.items() if not tools or cell.tool in tools}
-            for cell, counts in summed(cells).items():
-                most = max(trials for trials, _ in counts.values())
-                panel = f"{cell.protocol}, of {most}"
+        if of_trials:
+            for panel, most, values in _of_trials(store, condition, y, tools):
                 own = sweeps[panel, most, name]
                 if place in own:
                     raise UsageError(
                         f"{condition.name}: another condition of the same line learned as long; "
                         'give it a name that differs in more than "minutes=N"'
                     )
-                own[place] = all_tried(counts)
+                own[place] = values
         else:
             ends = [getattr(one, y)[-1] for one in courses[number].values()]
             sweeps["", 1.0 if y == "share" else math.inf, name][place] = ends
@@ -102,6 +109,29 @@ def curves_of(
         for (panel, most, name), own in sweeps.items()
     ]
     return Curves(lines, TIME.get(x) or _setting_words(x), MEASURES[y])
+
+
+def _of_trials(
+    store: Store, condition: Condition, y: str, tools: Sequence[str]
+) -> Iterator[tuple[str, float, Sequence[float]]]:
+    """Yield for each protocol and task set of a condition its words, the most that a robot can
+    have, and a value a robot.
+    """
+    number = condition.session.id
+    if y == "solved":
+        every = store.results.solved_by_cell(number, ("tool",))
+        cells = {cell: own for cell, own in every.items() if not tools or cell.tool in tools}
+        for cell, counts in summed(cells).items():
+            most = max(trials for trials, _ in counts.values())
+            yield f"{_trials_words(cell)}, of {most}", most, all_tried(counts)
+        return
+    for cell, values in store.results.means_of_trials(number, y, tools).items():
+        yield _trials_words(cell), math.inf, list(values.values())
+
+
+def _trials_words(cell: Cell) -> str:
+    """Return a protocol, and its tasks where they are not the paper's."""
+    return cell.protocol if cell.task_set == TASK_SET else f"{cell.protocol}, {cell.task_set}"
 
 
 def _sweeps(conditions: Sequence[Condition], x: str) -> list[tuple[str, float]]:

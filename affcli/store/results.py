@@ -126,6 +126,43 @@ class Results:
             for cell in sorted(cells, key=firsts.__getitem__)
         }
 
+    def means_of_trials(
+        self, session_id: int, measure: str, tools: Sequence[str] = ()
+    ) -> dict[Cell, dict[int, float]]:
+        """Return for each protocol and task set of a session by robot the mean of a measure.
+
+        Args:
+            session_id: the session.
+            measure: ``steps`` or ``seconds`` of its solved trials, or ``error``: how far a step of
+                all that count left the attractor from where its row said (in).
+            tools: only of trials with these; all if empty.
+
+        Raises:
+            UsageError: the steps, which tell of the error, were not kept.
+        """
+        t, s = trial.c, step.c
+        cell = (t.protocol, t.task_set, t.robot)
+        if measure == "error":
+            require_kept(self.database, "steps", used_in(session_id))
+            dx, dy = s.seen_dx - s.expected_dx, s.seen_dy - s.expected_dy
+            found = (
+                sa.select(*cell, sa.func.avg(sa.func.sqrt(dx * dx + dy * dy)))
+                .select_from(trial.join(step, s.trial_id == t.id))
+                .where(t.outcome.in_(COUNTED))
+            )
+        else:
+            value = {"steps": t.steps, "seconds": t.robot_seconds}[measure]
+            found = sa.select(*cell, sa.func.avg(value)).where(t.outcome == Outcome.SOLVED.value)
+        wanted = (
+            found.where(t.session_id == session_id, t.tool.in_(tools) if tools else sa.true())
+            .group_by(*cell)
+            .order_by(sa.func.min(t.id))
+        )
+        means: dict[Cell, dict[int, float]] = {}
+        for protocol, task_set, robot, mean in self._all(wanted):
+            means.setdefault(Cell(protocol, task_set), {})[robot] = mean
+        return means
+
     def outcome_counts(self, session_ids: Iterable[int]) -> dict[Outcome, int]:
         """Return how the trials of some sessions ended, counted by kind of end."""
         t = trial.c

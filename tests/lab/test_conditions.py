@@ -1,5 +1,8 @@
 """Conditions read from a store: what their robots solved, compared, planned with and followed."""
 
+import math
+from statistics import fmean
+
 import pytest
 import sqlalchemy as sa
 
@@ -7,6 +10,7 @@ from affcli.analysis.paired import summed
 from affcli.analysis.power import Untold
 from affcli.core.records import FailedRobot
 from affcli.core.results import Cell
+from affcli.core.trial import Outcome
 from affcli.errors import UsageError
 from affcli.lab.conditions import compared, counts_of, planned, sessions_named
 from affcli.lab.courses import curves_of
@@ -185,6 +189,36 @@ def test_a_setting_that_differs_is_the_axis_of_the_curve(store: Store) -> None:
     assert curves_of(store, conditions, "solved", "sensor.position_noise") == found
     (rows,) = curves_of(store, conditions, "rows", "sensor.position_noise").lines
     assert [point.mean for point in rows.points] == [20.0] * 3
+
+
+def test_what_trials_took_and_how_far_their_steps_went_astray(store: Store) -> None:
+    (first, *_) = sessions_named(store, stored_conditions(store))
+    number = first.session.id
+    took = {name: store.results.means_of_trials(number, name) for name in ("steps", "seconds")}
+    astray = store.results.means_of_trials(number, "error")
+    for cell in (ALL, Cell(ADAPTATION, TASKS)):
+        own = [
+            one
+            for one in store.trials.trials()
+            if one.session_id == number and one.spec.protocol == cell.protocol
+        ]
+        for robot in range(8):
+            mine = [one for one in own if one.spec.robot == robot]
+            won = [one for one in mine if one.outcome is Outcome.SOLVED]
+            assert took["steps"][cell][robot] == fmean(one.steps or 0 for one in won)
+            seconds = fmean(one.robot_seconds or 0.0 for one in won)
+            assert took["seconds"][cell][robot] == pytest.approx(seconds)
+            apart = [
+                math.dist((use.seen.dx, use.seen.dy), (use.expected.dx, use.expected.dy))
+                for one in mine
+                for use in store.trials.steps(one.id)
+            ]
+            assert astray[cell][robot] == pytest.approx(fmean(apart))
+    of_hook = store.results.means_of_trials(number, "steps", ["t-hook"])
+    assert of_hook.keys() == took["steps"].keys()
+    lines = curves_of(store, [first], "error", "minutes").lines
+    assert [line.panel for line in lines] == [REACH, ADAPTATION]
+    assert lines[0].points[0].robots == 8
 
 
 def test_courses_follow_robots_over_minutes_or_rows(store: Store) -> None:
