@@ -92,6 +92,16 @@ def papers_successes(spec: TrialSpec) -> int | None:
     return EXTENSION_OF_REACH[spec.tool, spec.goal] if papers_cell(spec) else None
 
 
+def trials_words(protocol: str, task_set: str) -> str:
+    """Return what trials are of: the protocol, and the tasks where they are not the paper's; of
+    extension of reach, which is the usual one, then the tasks alone.
+    """
+    if task_set == TASK_SET:
+        return protocol
+    usual = protocol == Protocol.EXTENSION_OF_REACH.value
+    return task_set if usual else f"{protocol}, {task_set}"
+
+
 def row_name(tool: str, planner: str, task_set: str) -> str:
     """Return what trials with a tool stand under: the tool, and what of the rest is not the
     paper's.

@@ -12,7 +12,7 @@ from affcli.cli.figure import Figure, figure
 from affcli.cli.options import DEFAULT_DATABASE, Database
 from affcli.errors import UsageError
 from affcli.report import figures
-from affcli.report.captions import comparison_words, conditions_words
+from affcli.report.captions import comparison_words, conditions_words, experiment_words
 
 
 @figure
@@ -71,5 +71,8 @@ def curve(
         conditions = conditions_named(store, experiment, sessions, 1)
         found = lab.courses.curves_of(store, conditions, y, x)
     figures.curve.require_few(found.lines)
-    words = conditions_words(f"{found.y.capitalize()} against {found.x}", conditions)
+    title = f"{found.y.capitalize()} against {found.x}"
+    words = conditions_words(title, conditions)
+    if experiment is not None:
+        words = experiment_words(title, experiment, conditions)
     return Figure(words, partial(figures.curve.curve_figure, found.lines, found.x, found.y))

@@ -9,11 +9,10 @@ from typing import NamedTuple
 from affcli.analysis.courses import Course, Line, course_line, swept_line
 from affcli.analysis.curves import INTERVALS, Curve
 from affcli.analysis.paired import all_tried, summed
-from affcli.analysis.paper import TASK_SET
+from affcli.analysis.paper import trials_words
 from affcli.config import known_settings
 from affcli.core.names import one_of
 from affcli.core.records import LearningRunInfo
-from affcli.core.results import Cell
 from affcli.errors import UsageError
 from affcli.lab.conditions import Condition, repeated
 from affcli.lab.run_parts import settings_of
@@ -68,7 +67,9 @@ def curves_of(
     y = one_of("measure", y, list(MEASURES))
     swept = _swept(conditions)
     x = x or (swept[0] if len(swept) == 1 else "minutes")
-    places = _sweeps(conditions, x) if x not in TIME else []
+    places: list[tuple[str, Sequence[float]]] = []
+    if x not in TIME:
+        places = [(name, (place,)) for name, place in _sweeps(conditions, x)]
     of_trials = y in OF_TRIALS
     by_end = of_trials and x == "minutes"
     courses = (
@@ -81,26 +82,36 @@ def curves_of(
         ]
         return Curves(lines, TIME[x], MEASURES[y])
     if by_end:
-        places = [(_name_beside(one.name, x), _minutes(store, one)) for one in conditions]
+        minutes = [_minutes(store, one) for one in conditions]
+        known = [one for one in minutes if one is not None]
+        if not known:
+            raise UsageError(f"{conditions[0].name}: nothing learned; name another session")
+        # What a condition gives that learns nothing is a level, whatever the others learned.
+        ends = (min(known), max(known))
+        places = [
+            (_name_beside(one.name, x), ends if own is None else (own,))
+            for one, own in zip(conditions, minutes, strict=True)
+        ]
     # How many rows there are nobody chose: along them each condition is a mark by itself.
     places = places or [
-        (one.name, math.fsum(getattr(course, x)[-1] for course in own.values()) / len(own))
+        (one.name, (math.fsum(getattr(course, x)[-1] for course in own.values()) / len(own),))
         for one, own in zip(conditions, courses, strict=True)
     ]
     sweeps: dict[tuple[str, float, str], dict[float, Sequence[float]]] = defaultdict(dict)
-    for number, (condition, (name, place)) in enumerate(zip(conditions, places, strict=True)):
+    for number, (condition, (name, at)) in enumerate(zip(conditions, places, strict=True)):
         if of_trials:
             for panel, most, values in _of_trials(store, condition, y, tools):
                 own = sweeps[panel, most, name]
-                if place in own:
+                if own.keys() & set(at):
                     raise UsageError(
                         f"{condition.name}: another condition of the same line learned as long; "
                         'give it a name that differs in more than "minutes=N"'
                     )
-                own[place] = values
+                own |= dict.fromkeys(at, values)
         else:
-            ends = [getattr(one, y)[-1] for one in courses[number].values()]
-            sweeps["", 1.0 if y == "share" else math.inf, name][place] = ends
+            reached = [getattr(one, y)[-1] for one in courses[number].values()]
+            most = 1.0 if y == "share" else math.inf
+            sweeps["", most, name] |= dict.fromkeys(at, reached)
     if not sweeps:
         with_what = f"with {' or '.join(tools)}; name another tool" if tools else "yet"
         raise UsageError(f"no trials {with_what}")
@@ -123,15 +134,10 @@ def _of_trials(
         cells = {cell: own for cell, own in every.items() if not tools or cell.tool in tools}
         for cell, counts in summed(cells).items():
             most = max(trials for trials, _ in counts.values())
-            yield f"{_trials_words(cell)}, of {most}", most, all_tried(counts)
+            yield f"{trials_words(*cell[:2])}, of {most}", most, all_tried(counts)
         return
     for cell, values in store.results.means_of_trials(number, y, tools).items():
-        yield _trials_words(cell), math.inf, list(values.values())
-
-
-def _trials_words(cell: Cell) -> str:
-    """Return a protocol, and its tasks where they are not the paper's."""
-    return cell.protocol if cell.task_set == TASK_SET else f"{cell.protocol}, {cell.task_set}"
+        yield trials_words(*cell[:2]), math.inf, list(values.values())
 
 
 def _sweeps(conditions: Sequence[Condition], x: str) -> list[tuple[str, float]]:
@@ -194,13 +200,17 @@ def _setting_words(name: str) -> str:
     return f"{name} ({unit})" if unit else name
 
 
-def _minutes(store: Store, condition: Condition) -> float:
-    """Return how long the robots of a condition learned with each tool, as they were to (min)."""
+def _minutes(store: Store, condition: Condition) -> float | None:
+    """Return how long the robots of a condition learned with each tool, as they were to (min); None
+    where they learned nothing, as those that are told what pushes do.
+    """
+    runs = store.learning.runs(session_id=condition.session.id)
     lengths = [
         60.0 * run.spec.hours if run.spec.hours is not None else run.robot_seconds / 60.0
-        for run in _begun(store, condition)
+        for run in runs
+        if run.robot_seconds
     ]
-    return math.fsum(lengths) / len(lengths)
+    return math.fsum(lengths) / len(lengths) if lengths else None
 
 
 def _begun(store: Store, condition: Condition) -> Sequence[LearningRunInfo]:

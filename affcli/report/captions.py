@@ -195,7 +195,10 @@ def conditions_words(what: str, conditions: Sequence[tuple[str, SessionInfo, int
 
 
 def experiment_words(
-    what: str, name: str, conditions: Sequence[tuple[str, SessionInfo, int]], tools: Sequence[str]
+    what: str,
+    name: str,
+    conditions: Sequence[tuple[str, SessionInfo, int]],
+    tools: Sequence[str] = (),
 ) -> Words:
     """Return a title, and of which experiment and robots it is; the key names the conditions."""
     sessions = [session for _, session, _ in conditions]

@@ -6,7 +6,7 @@ from typing import Any
 from rich.text import Text
 
 from affcli.analysis.paired import LEVEL, Comparison, Difference
-from affcli.analysis.paper import TASK_SET
+from affcli.analysis.paper import TASK_SET, trials_words
 from affcli.analysis.power import Plan, Untold
 from affcli.core.results import Cell, ConditionCounts
 from affcli.errors import one_line
@@ -52,7 +52,7 @@ def _table(
     headings, words = cell_words(cells)
     robots = many(max(one.robots for one in differences), "pair") + " of robots"
     if label:
-        headings, words = (label,), [(total_words(cell, cells),) for cell in cells]
+        headings, words = (label,), [(one_line(trials_words(*cell[:2]), 60),) for cell in cells]
     each = sorted({one.trials for one in differences})
     of = f"{each[0]:g}" if len(each) == 1 else f"{each[0]:g} to {each[-1]:g}"
     whole = f"{other.name} against {result.against.name}: {robots}, "
@@ -140,20 +140,17 @@ def held_words(cell: Cell) -> str:
     return cell.tool if cell.shape in ("", cell.tool) else f"{cell.tool} as {cell.shape}"
 
 
-def total_words(cell: Cell, cells: Sequence[Cell]) -> str:
-    """Return a protocol, and the task set where there are several."""
-    tasks = f", {cell.task_set}" if len({one.task_set for one in cells}) > 1 else ""
-    return one_line(f"{cell.protocol}{tasks}", 60)
-
-
 def whole_words(cell: Cell) -> str:
-    """Return a cell in one line: ``t-hook as l-hook, goal 1``; a protocol if it is all of one.
+    """Return a cell in one line: ``t-hook as l-hook, goal 1``; `trials_words` if it is all of one.
 
     The tasks are named where they are not the paper's.
     """
     goal, start = (f"{n} {v}" if v else "" for n, v in (("goal", cell.goal), ("start", cell.start)))
-    words = ", ".join(filter(None, (held_words(cell), goal, start))) or cell.protocol
-    return one_line(words if cell.task_set == TASK_SET else f"{words}, {cell.task_set}", 60)
+    words = [word for word in (held_words(cell), goal, start) if word]
+    if not words:
+        return one_line(trials_words(*cell[:2]), 60)
+    tasks = [] if cell.task_set == TASK_SET else [cell.task_set]
+    return one_line(", ".join(words + tasks), 60)
 
 
 def signed(value: float) -> str:

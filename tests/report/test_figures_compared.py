@@ -88,7 +88,7 @@ def test_tasks_that_are_not_the_papers_are_named() -> None:
 
     figure = compare_figure(Comparison.of(both(BASE), [both(OTHER)], ()))
     labels = [axes.get_yticklabels()[0].get_text() for axes in figure.axes]
-    assert labels == [f"extension of reach, {tasks}, of 4" for tasks in (wide, narrow)]
+    assert labels == [f"{tasks}, of 4" for tasks in (wide, narrow)]
 
 
 def test_a_caption_counts_the_robots_that_lived() -> None:

@@ -102,7 +102,8 @@ def _draw_sweep(axes: Axes, line: Line, look: Mapping[str, Any]) -> None:
 def _scale(axes: Axes, lines: Sequence[Line]) -> None:
     """Begin time at 0, and what is followed over it; tick where lines have marks."""
     if any(line.course for line in lines):
-        axes.set_ylim(bottom=0.0)
+        # Room for the marks of what is highest.
+        axes.set_ylim(0.0, 1.05 * axes.get_ylim()[1])
     if not all(map(_is_marked, lines)):
         axes.set_xlim(left=0.0)
     elif any(len(line.points) > 1 or not line.name for line in lines):
