@@ -154,6 +154,7 @@ LIMITS = {
             "counters": (0, 1),
             "spacing": (0.25, 2.0),
             "friction": (0.0, 10.0),
+            "even": (0, 1),
         }.items()
         for name in registry.parts("planners")
     },

@@ -47,6 +47,11 @@ PUSHES = {
         "Of tool and puck, as it believes; 0: as it truly is.",
         *(0.0, 10.0),
     ),
+    "even": Setting(
+        *(0, ""),
+        "1: it believes that the puck's centre of mass is its middle; 0: what is true of it.",
+        *(0, 1),
+    ),
 }
 PARTS = tuple(
     Part(

@@ -45,8 +45,10 @@ def told_spec(learned: LearningSpec, planner: Component, held: Tool | None = Non
     if held is not None and planner.name == ORACLE:
         # Under the name and the colour by which the robot would know it.
         believed = replace(held.painted(learned.held.color), name=learned.held.name)
-    spacing, friction = _told(planner)
-    explorer = Component.of(TOLD, {"spacing": spacing, "friction": friction})
+    values = registry.recorded("planners", planner).values(planner)
+    words = {name: values[name] for name in ("spacing", "friction")}
+    # What was told before one could be told of an even puck has this name.
+    explorer = Component.of(TOLD, words | ({"even": 1} if values["even"] else {}))
     told = replace(learned, held=believed, explorer=explorer, hours=None, behaviors=1)
     return replace(told, behaviors=len(_pushes(told)))
 
@@ -90,10 +92,4 @@ def belief_of(spec: LearningSpec) -> "Belief":
         *(spec.held, spec.binding, spec.repertoire, settings.workspace, settings.physics),
         *(settings.babbling, float(told["spacing"])),
     )
-    return belief.with_friction(float(told["friction"]))
-
-
-def _told(planner: Component) -> tuple[float, float]:
-    """Return spacing and friction of the pushes that a baseline is told."""
-    values = registry.recorded("planners", planner).values(planner)
-    return float(values["spacing"]), float(values["friction"])
+    return belief.told(float(told["friction"]), even=bool(told.get("even", 0)))

@@ -9,6 +9,7 @@ import pytest
 
 from affcli import registry
 from affcli.baselines.beliefs.pushes import pushes
+from affcli.config import load_settings
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.geometry import Point, near_any
 from affcli.core.specs import Protocol, RobotRecord
@@ -90,6 +91,22 @@ def test_what_is_believed_of_friction_changes_the_pushes() -> None:
         for text in (f"push-planner:{COARSE}", f"push-planner:{COARSE},friction=0.9")
     )
     assert plain != rough
+
+
+def test_a_lopsided_puck_is_believed_even_by_who_is_told_so() -> None:
+    lopsided = learning_spec(settings=load_settings(None, ["puck.mass_offset=0.3"]))
+    told = {
+        (even, offset): told_spec(
+            spec, registry.component("planners", f"push-planner:{COARSE},even={even}")
+        )
+        for even in (0, 1)
+        for offset, spec in ((0.0, LEARNED), (0.3, lopsided))
+    }
+    found = {which: pushes(belief_of(spec)) for which, spec in told.items()}
+    assert found[1, 0.3] == found[0, 0.0] == found[1, 0.0]
+    assert found[0, 0.3] != found[0, 0.0]
+    # Tables that were told before one could be told of an even puck keep their names.
+    assert str(told[0, 0.0].explorer) == "told:friction=0,spacing=2"
 
 
 def test_only_straight_slides_are_known() -> None:

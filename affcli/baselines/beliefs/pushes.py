@@ -56,12 +56,16 @@ class Belief:
     box: BabblingSettings
     spacing: float
 
-    def with_friction(self, friction: float) -> "Belief":
-        """Return the same with another friction of tool and puck; 0 leaves it."""
-        if not friction:
-            return self
-        believed = replace(self.workspace.friction, tool_puck=friction)
-        return replace(self, workspace=replace(self.workspace, friction=believed))
+    def told(self, friction: float, *, even: bool) -> "Belief":
+        """Return the same with another friction of tool and puck, which 0 leaves; and with a puck
+        whose centre of mass lies in its middle.
+        """
+        place = self.workspace
+        if friction:
+            place = replace(place, friction=replace(place.friction, tool_puck=friction))
+        if even:
+            place = replace(place, puck=replace(place.puck, mass_offset=0.0))
+        return replace(self, workspace=place)
 
 
 @lru_cache(maxsize=32)
