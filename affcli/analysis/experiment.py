@@ -1,13 +1,13 @@
 """What the robots of an experiment gave, condition by condition (§7)."""
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from affcli.analysis.paired import Comparison
+from affcli.analysis.paired import Comparison, Counts
 from affcli.core.records import FailedRobot
-from affcli.core.results import SuccessCount
+from affcli.core.results import Cell
 from affcli.core.specs import Protocol
 
 
@@ -54,12 +54,19 @@ class ExperimentResult:
     comparison: Comparison | None = None
 
 
-def tallies(counts: Iterable[SuccessCount]) -> dict[str, Tally]:
-    """Sum up the trials of a condition by kind: a set of tasks, or ``broken tool``."""
+def tallies(cells: Mapping[Cell, Counts]) -> dict[str, Tally]:
+    """Sum up the trials of a condition by kind: a set of tasks, or ``broken tool``.
+
+    Args:
+        cells: by protocol and task set alone: they are as large as there are robots.
+    """
     solved: dict[str, Counter[int]] = {}
     tried: Counter[str] = Counter()
-    for one in counts:
-        kind = "broken tool" if one.protocol is Protocol.TOOL_ADAPTATION else one.task_set
-        solved.setdefault(kind, Counter())[one.robot] += one.solved
-        tried[kind] += one.trials
+    for cell, counts in cells.items():
+        broken = cell.protocol == Protocol.TOOL_ADAPTATION.value
+        kind = "broken tool" if broken else cell.task_set
+        own = solved.setdefault(kind, Counter())
+        for robot, (trials, won) in counts.items():
+            own[robot] += won
+            tried[kind] += trials
     return {kind: Tally(by_robot, tried[kind]) for kind, by_robot in solved.items()}
