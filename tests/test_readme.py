@@ -43,6 +43,7 @@ CODE = "affcli/README.md"
 CHOICES = "affcli/core/README.md"
 CAMERA = "affcli/perception/README.md"
 EXPERIMENTS = "experiments/README.md"
+LOGS = "affcli/logs/README.md"
 OUR_FOLDERS = r"(?:affcli|tests|experiments|migrations)"
 LIGHTER = {
     "reproduce": ("--robots", "1", "--workers", "1", "--config", "leisurely.toml"),
@@ -93,6 +94,8 @@ def demo(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for code in blocks(EXPERIMENTS, "toml"):
         (folder / "share.toml").write_text(code)
     done("new", "tool", "rake", cwd=folder)
+    for name, language in (("trials.csv", "csv"), ("map.toml", "toml")):
+        (folder / name).write_text(*blocks(LOGS, language))
     for name in ("a.db", "b.db", "shard1.db", "shard2.db"):
         shutil.copy(folder / "demo.db", folder / name)
     (folder / "experiments").symlink_to(ROOT / "experiments")
@@ -164,6 +167,7 @@ def is_whole(command: str) -> bool:
     incomplete = {
         ("compare",),
         ("experiment",),
+        ("import",),
         ("power",),
         ("replay",),
         ("sql",),

@@ -30,7 +30,7 @@ class Push(NamedTuple):
     Args:
         moved: the attractor was seen to move (T = 1).
         seen: by how much (in, table frame).
-        wrist: how far the wrist went.
+        wrist: how far the wrist went; NaN where a log does not say.
         predicted: by the table after its first rows, by how many.
     """
 
@@ -95,7 +95,9 @@ class Score:
             false_alarms=sum(push.predicted[rows].by_row.distance > 0.0 for push in still),
             by_row=Errors.of([(push.predicted[rows].by_row, push.seen) for push in hits]),
             by_mean=Errors.of([(push.predicted[rows].by_mean, push.seen) for push in hits]),
-            as_wrist=Errors.of([(push.wrist, push.seen) for push in hits]),
+            as_wrist=Errors.of(
+                [(push.wrist, push.seen) for push in hits if not math.isnan(push.wrist.dx)]
+            ),
         )
 
 

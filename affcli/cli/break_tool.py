@@ -57,7 +57,7 @@ def break_tool(
     if becomes and loses:
         raise UsageError("--becomes the tool that is left, or --loses parts: give one of them")
     with opened(database, write=True) as store:
-        (used,) = learned_runs(store, tool_or_default(tool, run), database, run)
+        (used,) = learned_runs(store, tool_or_default(tool, run), database, run, usable=True)
         name = used.spec.tool
         left = _left(used.spec, becomes, loses or ())
         events = lab.breaking.break_tool(store, used, left, seed, now, planner, sensor, task)

@@ -20,7 +20,7 @@ def check(
     file: Annotated[
         Path,
         typer.Argument(
-            help="A TOML file: a tool, an experiment, or settings.",
+            help="A TOML file: a tool, a map of a log, an experiment, or settings.",
             metavar="FILE.toml",
             readable=False,
         ),

@@ -292,6 +292,12 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
             "affcli report",
         ),
         Command(
+            "which",
+            "which:which",
+            "Say which tool moves the attractor where, by which behavior, and how often.",
+            "affcli which nearer --by 5cm",
+        ),
+        Command(
             "compare",
             "compare:compare",
             "Compare conditions robot by robot: did it matter?",
@@ -314,6 +320,12 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
         CAMERA,
     ),
     "Data": (
+        Command(
+            "import",
+            "import_log:import_log",
+            "Import the log of a real robot: what it did with tools, and what moved.",
+            "affcli import trials.csv --map map.toml",
+        ),
         RUNS,
         Command(
             "sql", "sql:sql", "Ask the database one question in SQL.", 'affcli sql "select ..."'

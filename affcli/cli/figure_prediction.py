@@ -39,6 +39,7 @@ def prediction(
         (used,) = learned_runs(store, tool_or_default(tool, run), database, run)
         spec = lab.predicting.prediction_spec(used, used.spec.held, seed, sensor, pushes)
         doing = lab.predicting.predict(store, used, spec)
+        pushes = min(pushes, used.behaviors) if used.spec.logged else pushes
         done = followed(doing, f"pushing with the {spec.tool}", pushes, "pushes")
     words = prediction_words(used, spec, done)
     return Figure(words, partial(figures.prediction.prediction_figure, done))

@@ -32,13 +32,15 @@ def predict(
     """Predict fresh pushes with a table, and see how often it is right.
 
     A push is predicted by the nearest row of the same behavior: of all rows, and of only the first
-    that were learned. Nothing is written.
+    that were learned. Of a log that was imported each trial is predicted by the rows of the others.
+    Nothing is written.
     """
     with opened(database) as store:
         (used,) = learned_runs(store, tool_or_default(tool, run), database, run)
         held = lab.run_parts.tool_of(used.spec, shape or used.spec.tool)
         spec = lab.predicting.prediction_spec(used, held, seed, sensor, pushes)
         doing = lab.predicting.predict(store, used, spec)
+        pushes = min(pushes, used.behaviors) if used.spec.logged else pushes
         done = followed(doing, f"pushing with the {held.name}", pushes, "pushes")
     about = {
         "run": used.id,
@@ -52,5 +54,7 @@ def predict(
     show_either(
         as_json=as_json,
         results=lambda: [{**about, "scores": prediction_json(done)}],
-        tables=lambda: prediction_tables(f"Run {used.id}, {spec.tool}", RADIUS, done),
+        tables=lambda: prediction_tables(
+            f"Run {used.id}, {spec.tool}", RADIUS, done, logged=used.spec.logged
+        ),
     )

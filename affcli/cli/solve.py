@@ -71,7 +71,7 @@ def solve(
     wanted = lab.solving.WantedTasks(_tasks(task, goal, count), goal, start)
     trials: list[lab.solving.SolvedTrial] = []
     with opened(database, write=True) as store:
-        runs = learned_runs(store, tool, database, run)
+        runs = learned_runs(store, tool, database, run, usable=True)
         for one in lab.solving.solve(store, runs, wanted, seed, now, planner, sensor):
             trials.append(one)
             if explain and not as_json:

@@ -31,8 +31,9 @@ def show_row(
         run = store.learning.run(stored.run_id)
         history = lab.table.history_of(store, row_id)
         tries = store.verifications.of_row(row_id)
+        line = store.logs.line(run.id, stored.row.step)
     region = region_of(run.spec.held, stored.row)
-    found = (stored, region, run, history, tries)
+    found = (stored, region, run, history, tries, line)
     show_either(
         as_json=as_json,
         results=lambda: [row_json(*found)],

@@ -54,7 +54,7 @@ def verify(
     that matches its start. Nothing is written unless told to --update.
     """
     with opened(database, write=update) as store:
-        (used,) = learned_runs(store, tool_or_default(tool, run), database, run)
+        (used,) = learned_runs(store, tool_or_default(tool, run), database, run, usable=True)
         held = lab.run_parts.tool_of(used.spec, shape or used.spec.tool)
         spec = lab.verifying.verification_spec(
             used, held, seed, sensor, rows, until_verdict=until_verdict

@@ -1,5 +1,6 @@
 """One row of the affordance table (§3.2)."""
 
+import math
 from dataclasses import dataclass
 
 from affcli.core.behavior import BehaviorCall
@@ -41,6 +42,23 @@ class Affordance:
     times_successful: int = 1
     wrist_angle: float = 0.0
     travel: Point = Point(0.0, 0.0)
+
+    @property
+    def drawn_at(self) -> Point:
+        """Where its arrow begins in a drawing: where the attractor was as seen from the wrist (in);
+        the origin for all rows of a log that does not say it.
+        """
+        return self.start.wrist_to_object if self.is_placed() else Point(0.0, 0.0)
+
+    def is_placed(self) -> bool:
+        """Tell whether it says where the attractor was as seen from the wrist; a log may not."""
+        at = self.start.wrist_to_object
+        return not math.isnan(at.x + at.y)
+
+    @property
+    def wrist_degrees(self) -> int:
+        """The wrist's angle in whole degrees; 0 where a log does not say it."""
+        return 0 if math.isnan(self.wrist_angle) else round(math.degrees(self.wrist_angle))
 
     @property
     def replication_probability(self) -> float:

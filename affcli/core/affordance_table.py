@@ -111,9 +111,13 @@ class AffordanceTable:
 
 
 def _consistent(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
-    """Tell whether two (object, tool) colour sextuples differ by little in each of the two."""
+    """Tell whether two (object, tool) colour sextuples differ by little in each of the two.
+
+    A colour that is not known (NaN) contradicts none.
+    """
     pairs = [(x - y) ** 2 for x, y in zip(a, b, strict=True)]
-    return max(sum(pairs[:3]), sum(pairs[3:])) <= COLOR_TOLERANCE**2
+    most = COLOR_TOLERANCE**2
+    return not (sum(pairs[:3]) > most or sum(pairs[3:]) > most)
 
 
 def _color_classes(rows: list[Affordance]) -> tuple[Rows, list[tuple[float, ...]]]:

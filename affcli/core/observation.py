@@ -5,16 +5,19 @@ from typing import Literal, NamedTuple, get_args
 
 from affcli.core.geometry import Point
 
-SensorKind = Literal["noisy", "exact", "camera"]
-"""Through what a simulated robot sees: true positions with noise, without, or pictures."""
-SENSOR_KINDS: tuple[SensorKind, ...] = get_args(SensorKind)
+SensorKind = Literal["noisy", "exact", "camera", "log"]
+"""Through what a robot sees: true positions with noise, without, or pictures; ``log``: that of
+another robot, whose log was imported."""
+SENSOR_KINDS: tuple[SensorKind, ...] = tuple(k for k in get_args(SensorKind) if k != "log")
+"""Those that a simulated robot can have."""
 
 
 class Observation(NamedTuple):
     """The twelve components o1 to o12 of §5.2, in order.
 
-    Positions in inches, colours 0 to 255. "Camera-centric" means the coordinates that the paper's
-    calibrated camera gives, which are those of the table frame (§4: a pixel maps to (X, Y, Z)).
+    Positions in inches, colours 0 to 255; NaN where a log does not say. "Camera-centric" means the
+    coordinates that the paper's calibrated camera gives, which are those of the table frame (§4: a
+    pixel maps to (X, Y, Z)).
     """
 
     object_x: float
@@ -69,9 +72,15 @@ class Movement(NamedTuple):
 
 
 def movement(start: Observation, end: Observation) -> Movement:
-    """Return the attractor's movement from `start` to `end`: O^e - O^s over o1 to o3 (§5.2)."""
+    """Return the attractor's movement from `start` to `end`: O^e - O^s over o1 to o3 (§5.2).
+
+    Of a log that does not say how high it lies: on the table.
+    """
+    dz = end.object_z - start.object_z
     return Movement(
-        end.object_x - start.object_x, end.object_y - start.object_y, end.object_z - start.object_z
+        end.object_x - start.object_x,
+        end.object_y - start.object_y,
+        0.0 if math.isnan(dz) else dz,
     )
 
 

@@ -95,7 +95,7 @@ class LearningRunInfo:
         rows: rows of its affordance table.
         resets: how often the attractor was put back.
         redraws: wrist positions drawn again because the attractor was in the way.
-        robot_seconds: the robot clock.
+        robot_seconds: the robot clock; NaN for a log without times.
         checkpoint: what it needs to go on; None at the beginning and when done.
         kept: how much of it is stored.
         started_at: when it was begun, ISO text, UTC.

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from affcli.core.behavior import BehaviorCall, Repertoire, repertoire_json
 from affcli.core.geometry import Pose
 from affcli.core.identity import Component, key_of
+from affcli.core.log import LOG
 from affcli.core.observation import SensorKind
 from affcli.core.task import Task
 from affcli.core.tool import Tool
@@ -78,6 +79,11 @@ class Parts:
     binding: BehaviorCall
     explorer: Component
     sensor: SensorKind
+
+    @property
+    def logged(self) -> bool:
+        """It was imported from a log: no robot could go on with it, in no world."""
+        return self.world.name == LOG
 
     def carried(self) -> dict[str, Any]:
         """Return the parts by name: to carry them on."""

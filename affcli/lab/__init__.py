@@ -17,8 +17,10 @@ if TYPE_CHECKING:
     from affcli.lab import conducting as conducting
     from affcli.lab import courses as courses
     from affcli.lab import definition as definition
+    from affcli.lab import effects as effects
     from affcli.lab import experiment as experiment
     from affcli.lab import film_strips as film_strips
+    from affcli.lab import importing as importing
     from affcli.lab import learning as learning
     from affcli.lab import learning_curves as learning_curves
     from affcli.lab import overview as overview

@@ -1,7 +1,7 @@
 """Affordance tables and their rows, read for figures (Figs. 5 and 6)."""
 
 from affcli import registry
-from affcli.core.affordance import PROBABILITY_THRESHOLD
+from affcli.core.affordance import PROBABILITY_THRESHOLD, Affordance
 from affcli.core.identity import Component
 from affcli.core.records import LearningRunInfo
 from affcli.errors import BadInputError, UsageError
@@ -27,6 +27,12 @@ def tables_compared(store: Store, one: LearningRunInfo, other: LearningRunInfo) 
     if one.id == other.id:
         raise UsageError(f"--compare {other.id}: that is the run itself; name another")
     first, second = ([row.row for row in store.learning.rows(run.id)] for run in (one, other))
+    for run, rows in ((one, first), (other, second)):
+        if not all(map(Affordance.is_placed, rows)):
+            raise UsageError(
+                f"run {run.id} comes from a log that does not say where the tool was: its rows "
+                "have no like in another table; compare how often: affcli which"
+            )
     radii = _puck_radius(one), _puck_radius(other)
     return table_views.runs_compared((one, other), (first, second), radii)
 

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from affcli.config import Settings, load_settings, toml_file
 from affcli.core.identity import shown
@@ -10,6 +11,7 @@ from affcli.core.tool import Tool, hold_of
 from affcli.errors import BadInputError, one_line
 from affcli.lab.definition import experiment_file
 from affcli.lab.run_parts import RunParts, beyond_the_box
+from affcli.logs.mapping import map_of_tables
 from affcli.perception.palette import table_palette
 
 
@@ -18,7 +20,7 @@ class Checked:
     """A file that was read whole and is as it must be.
 
     Args:
-        kind: ``tool``, ``experiment`` or ``settings``.
+        kind: ``tool``, ``experiment``, ``map of a log`` or ``settings``.
         name: of what it describes.
         facts: what it says, in words, by what that is.
         tool: what it describes, if that is a tool, as it is held.
@@ -44,6 +46,8 @@ def checked(path: Path, settings: Settings) -> Checked:
     tables = toml_file(path, one_line(path))
     if "tool" in tables or "part" in tables:
         return _tool(path, settings)
+    if "log" in tables and "columns" in tables:
+        return _map(path, tables)
     if "experiment" in tables:
         made = experiment_file(path)
         named = [condition.name for condition in made.conditions]
@@ -55,6 +59,21 @@ def checked(path: Path, settings: Settings) -> Checked:
         return Checked("experiment", made.name, facts)
     differing = load_settings(path).differing()
     return Checked("settings", path.stem, {key: shown(one) for key, one in differing.items()})
+
+
+def _map(path: Path, tables: Mapping[str, Any]) -> Checked:
+    """Return what a map of a log says."""
+    made = map_of_tables(tables, f"map {one_line(path)}")
+    columns = {**made.columns, **made.parameters}
+    facts = {
+        "source": made.source,
+        "licence": made.licence or "not known",
+        "citation": made.citation or "not known",
+        "columns": ", ".join(f"{name} {where}" for name, where in columns.items()),
+        "constants": ", ".join(f"{k} {v}" for k, v in made.constants.items()) or "none",
+        "one unit of length": f"{made.length:.4g} in",
+    }
+    return Checked("map of a log", path.stem, facts)
 
 
 def _tool(path: Path, settings: Settings) -> Checked:

@@ -1,5 +1,6 @@
 """How learning went over robot time, read for figures."""
 
+import math
 from collections import Counter, defaultdict
 from collections.abc import Sequence
 from dataclasses import replace
@@ -79,6 +80,8 @@ def by_kind(curves: Sequence[Curve]) -> list[ToolCurves]:
 def _seconds(runs: Sequence[LearningRunInfo]) -> float:
     """Return the length of the intervals: so many in the longest run."""
     for run in runs:
+        if math.isnan(run.robot_seconds):
+            raise UsageError(f"run {run.id} comes from a log without times: it has no curve")
         if run.robot_seconds == 0.0:
             raise UsageError(f"run {run.id} has not begun; go on with it first")
     return max(run.robot_seconds for run in runs) / INTERVALS

@@ -237,6 +237,8 @@ def _of_many(store: Store, robots: Sequence[int], of: SessionInfo | None) -> _Sh
 
 def _robot(run: LearningRunInfo) -> str:
     """Return whose a learning run is, in words that tell it from the others of a page."""
+    if run.spec.logged:
+        return "a log"
     return f"seed {run.spec.seed}" if run.session_id is None else f"robot {run.spec.robot}"
 
 
@@ -249,6 +251,8 @@ def _learned(store: Store, run: LearningRunInfo) -> LearnedRows:
 def _with_predictions(store: Store, learned: LearnedRows) -> LearnedRows:
     """Return a table with what it says of fresh pushes; with the reason where that cannot be."""
     run = learned.run
+    if run.spec.logged:
+        return replace(learned, not_asked="it comes from a log: affcli predict asks of its trials")
     try:
         spec = prediction_spec(run, run.spec.held, 0, None, PUSHES)
         return replace(learned, pushes=list(predict(store, run, spec)))

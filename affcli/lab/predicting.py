@@ -1,19 +1,25 @@
 """The stored table as a predictive model, on pushes it has never seen (§6.1)."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import islice
+
+import numpy as np
 
 from affcli import registry
 from affcli.analysis.prediction import STAGES, Prediction, Push
 from affcli.core.affordance import Affordance, is_probable
+from affcli.core.behavior import BehaviorCall
+from affcli.core.geometry import Point
 from affcli.core.identity import Component
-from affcli.core.observation import Movement, SensorKind, movement
+from affcli.core.log import NOT_LOGGED
+from affcli.core.observation import Movement, Observation, SensorKind, movement
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import LearningSpec, VerificationSpec
 from affcli.core.tool import Tool
 from affcli.core.trial import BabblingRecord
 from affcli.errors import UsageError
-from affcli.lab.run_parts import settings_of, world_of
+from affcli.lab.run_parts import require_robot, settings_of, world_of
 from affcli.planning.prediction import TablePredictor
 from affcli.procedures.babbling import BabblingState, babble
 from affcli.store import Store
@@ -53,17 +59,60 @@ class StagedTable:
 
     def push(self, record: BabblingRecord) -> Push:
         """Return what was predicted of a push, and what came of it."""
-        call, offset = record.execution.call, record.start.wrist_to_object
         start, end = record.execution.wrist_start, record.execution.wrist_end
         return Push(
             moved=record.affordance is not None,
             seen=movement(record.start, record.end),
             wrist=Movement(end.x - start.x, end.y - start.y, 0.0),
-            predicted={
-                number: Prediction(table.predict(call, offset), table.mean_movement(call))
-                for number, table in self._stages.items()
-            },
+            predicted=self.asked(record.execution.call, record.start.wrist_to_object),
         )
+
+    def asked(self, call: BehaviorCall, at: Point, without: int = 0) -> dict[int, Prediction]:
+        """Return what each stage predicts; the row of the step `without` is not asked."""
+        return {
+            number: Prediction(table.predict(call, at, without), table.mean_movement(call, without))
+            for number, table in self._stages.items()
+        }
+
+
+def logged_pushes(store: Store, run: LearningRunInfo, spec: VerificationSpec) -> Iterator[Push]:
+    """Predict the trials of a log, each by the rows of all the others.
+
+    Where the log does not say where the tool was, a row is near when the object was at nearly the
+    same place of the table. The counters by which rows are left out were made by all trials.
+
+    Args:
+        store: open for reading.
+        run: which was imported.
+        spec: how many, and the seed by which they are drawn where there are more.
+
+    Raises:
+        BadInputError: another sensor, or another tool in the hand, is asked for.
+    """
+    if spec.sensor != run.spec.sensor or spec.held != run.spec.held:
+        require_robot(run.spec)
+    rows = _live(store, run)
+    tries = store.learning.tries(run.id)
+    if not all(map(Affordance.is_placed, rows)):
+        rows = [replace(row, start=_at_its_place(row.start)) for row in rows]
+        tries = tuple(one._replace(offset=one.at) for one in tries)
+    staged = StagedTable(rows)
+    some = min(spec.tries, len(tries))
+    drawn = np.random.default_rng(spec.seed).choice(len(tries), some, replace=False)
+    for one in (tries[place] for place in sorted(drawn)):
+        predicted = staged.asked(one.call, one.offset, one.step)
+        yield Push(one.moved, one.seen, Movement(NOT_LOGGED, NOT_LOGGED, 0.0), predicted)
+
+
+def _at_its_place(seen: Observation) -> Observation:
+    """Return an observation that tells places on the table where it should tell offsets."""
+    return seen._replace(wrist_to_object_x=seen.object_x, wrist_to_object_y=seen.object_y)
+
+
+def _live(store: Store, run: LearningRunInfo) -> list[Affordance]:
+    """Return the rows of a table that are not excluded."""
+    table, _ = store.learning.table(run.id)
+    return [row for row in table if is_probable(row.times_successful, row.times_used)]
 
 
 def prediction_spec(
@@ -93,7 +142,7 @@ def prediction_spec(
 
 
 def predict(store: Store, run: LearningRunInfo, spec: VerificationSpec) -> Iterator[Push]:
-    """Ask a stored table what pushes will do, and do them.
+    """Ask a stored table what pushes will do, and do them; of a log, ask about its own trials.
 
     Rows that were excluded (probability 1/2 or less) tell nothing.
 
@@ -105,8 +154,9 @@ def predict(store: Store, run: LearningRunInfo, spec: VerificationSpec) -> Itera
     Yields:
         Each push with what was predicted of it.
     """
-    table, _ = store.learning.table(run.id)
-    live = [row for row in table if is_probable(row.times_successful, row.times_used)]
-    staged = StagedTable(live)
+    if run.spec.logged:
+        yield from logged_pushes(store, run, spec)
+        return
+    staged = StagedTable(_live(store, run))
     for record in fresh_pushes(spec, run.spec):
         yield staged.push(record)

@@ -99,7 +99,8 @@ def beyond_the_box(learned: LearningSpec) -> str:
 
 def settings_of(learned: Parts, sensor: SensorKind | None = None) -> Settings:
     """Return the settings of runs with these parts, seen through their own sensor or another."""
-    return with_sensor(settings_of_text(learned.settings), sensor or learned.sensor)
+    settings = settings_of_text(learned.settings)
+    return settings if learned.logged else with_sensor(settings, sensor or learned.sensor)
 
 
 def tool_of(learned: LearningSpec, name: str) -> Tool:
@@ -142,6 +143,7 @@ def world_of(learned: LearningSpec, *, again: bool = False) -> World:
         DatabaseError: it does not know some of the settings, or the shape of the run's tool.
     """
     settings, made = settings_of(learned), learned.world
+    require_robot(learned)
     require_known(settings)
     require_shape(learned.held)
     hold_of(learned.binding)
@@ -149,6 +151,15 @@ def world_of(learned: LearningSpec, *, again: bool = False) -> World:
         require_world_version(made)
     here = replace(made, version=registry.recorded("worlds", made).version)
     return registry.world(here, settings)
+
+
+def require_robot(learned: LearningSpec) -> None:
+    """Make sure that there is a robot that can use what was learned; BadInputError otherwise."""
+    if learned.logged:
+        raise BadInputError(
+            f"the {one_line(learned.tool, 40)} of this run comes from a log: there is no robot "
+            "that could use it, nor a world to do it again in; name a run that affcli learned"
+        )
 
 
 def require_shape(tool: Tool, where: str = "") -> None:

@@ -9,16 +9,17 @@ from affcli.core.observation import SensorKind
 from affcli.core.world import World
 
 
-def versions(world: World, sensor: SensorKind) -> dict[str, str]:
+def versions(world: World | None = None, sensor: SensorKind = "noisy") -> dict[str, str]:
     """Return the versions of affcli and of what decides its numbers.
 
     Args:
-        world: where it took place.
+        world: where it took place; None for what was read from a log.
         sensor: through what the robot saw.
     """
+    packages = () if world is None else world.packages(sensor)
     return {
         "affcli": __version__,
         "python": platform.python_version(),
         "sqlite": sqlite3.sqlite_version,
-        **{name: version(name) for name in world.packages(sensor)},
+        **{name: version(name) for name in packages},
     }

@@ -7,6 +7,8 @@ of the exploratory behaviors."
 import math
 from collections.abc import Iterable
 
+import numpy as np
+
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.behavior import BehaviorCall
@@ -36,13 +38,17 @@ class TablePredictor:
         for row in rows:
             by_call.setdefault(row.exploratory, []).append(row)
         self._tables = {call: AffordanceTable(some) for call, some in by_call.items()}
+        self._steps = {
+            call: np.array([row.step for row in table]) for call, table in self._tables.items()
+        }
 
-    def predict(self, call: BehaviorCall, offset: Point) -> Movement:
+    def predict(self, call: BehaviorCall, offset: Point, without: int = 0) -> Movement:
         """Return the movement of the nearest row of this behavior and parameter.
 
         Args:
             call: what will be executed.
             offset: the attractor as seen from the wrist (in).
+            without: the row of this step is not asked; 0 for none.
 
         Returns:
             No movement when no row is near enough; of equally near rows the older one's.
@@ -52,18 +58,23 @@ class TablePredictor:
             return NO_MOVEMENT
         dx, dy = table.offset_x - offset.x, table.offset_y - offset.y
         squared = dx * dx + dy * dy
+        if without:
+            squared[self._steps[call] == without] = math.inf
         nearest = int(squared.argmin())
         if math.sqrt(float(squared[nearest])) > self._radius:
             return NO_MOVEMENT
         return table.row(nearest).expected_movement
 
-    def mean_movement(self, call: BehaviorCall) -> Movement:
+    def mean_movement(self, call: BehaviorCall, without: int = 0) -> Movement:
         """Return the mean movement of all rows of this behavior and parameter: wherever it lies.
 
-        No movement when there are none.
+        No movement when there are none. `without` is as in `predict`.
         """
         table = self._tables.get(call)
         if table is None:
             return NO_MOVEMENT
-        means = (table.movement_x, table.movement_y, table.movement_z)
-        return Movement(*(float(column.mean()) for column in means))
+        asked = self._steps[call] != without
+        if not asked.any():
+            return NO_MOVEMENT
+        columns = (table.movement_x, table.movement_y, table.movement_z)
+        return Movement(*(float(column[asked].mean()) for column in columns))

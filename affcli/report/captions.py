@@ -43,7 +43,7 @@ def joined(*facts: str) -> str:
 
 def differing(spec: LearningSpec | SessionSpec) -> str:
     """Return what of a run or session is not default: settings, parts, sensor."""
-    return _not_default(run_words(spec))
+    return run_words(spec) if spec.logged else _not_default(run_words(spec))
 
 
 def differing_settings(settings: str) -> str:
@@ -75,6 +75,8 @@ def run_name(run: LearningRunInfo) -> str:
     unfinished, length = run.status != "done", clock(run.robot_seconds)
     far = f", {length}" if unfinished or spec.hours != HOURS else ""
     so_far = " so far (unfinished)" if unfinished else ""
+    if spec.logged:
+        return f"run {run.id}: {tool_words(spec.tool)}"
     return f"run {run.id}: {tool_words(spec.tool)}, seed {spec.seed}{robot}{far}{so_far}"
 
 
@@ -164,6 +166,11 @@ def prediction_words(run: LearningRunInfo, spec: VerificationSpec, pushes: Seque
     """Return whose table predicts, and what."""
     sensor = "" if spec.sensor == run.spec.sensor else f", sensor {spec.sensor}"
     moved = f"{sum(push.moved for push in pushes)} moved the puck"
+    if run.spec.logged:
+        trials = f"trials: {len(pushes)}, each predicted by the others; of these {moved}"
+        return Words(
+            "Predictions of logged trials as the table grows", joined(trials, run_caption(run))
+        )
     return Words(
         "Predictions of fresh pushes as the table grows",
         joined(

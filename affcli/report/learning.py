@@ -6,7 +6,15 @@ from typing import Any
 from affcli.core.records import LearningRunInfo
 from affcli.core.results import BehaviorGroup
 from affcli.report.sheet import Sheet
-from affcli.report.words import call_words, clock, degrees_of, many, run_words, settings_words
+from affcli.report.words import (
+    call_words,
+    clock,
+    degrees_of,
+    many,
+    run_words,
+    seed_words,
+    settings_words,
+)
 
 
 def groups_table(run: LearningRunInfo, groups: Iterable[BehaviorGroup]) -> Sheet:
@@ -42,7 +50,7 @@ def learned_table(runs: Sequence[LearningRunInfo]) -> Sheet:
         table.add(
             str(run.id),
             f"{run.spec.tool}{unfinished}",
-            str(run.spec.seed),
+            seed_words(run.spec),
             clock(run.robot_seconds),
             str(run.behaviors),
             str(run.rows),
@@ -81,7 +89,7 @@ def run_json(run: LearningRunInfo) -> dict[str, Any]:
         "run": run.id,
         "session": run.session_id,
         "tool": spec.tool,
-        "seed": spec.seed,
+        "seed": None if spec.logged else spec.seed,
         "status": run.status,
         "begun": run.started_at,
         "note": run.note,

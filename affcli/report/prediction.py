@@ -19,7 +19,7 @@ PREDICTORS = {
 
 
 def prediction_tables(
-    title: str, radius: float, pushes: Sequence[Push]
+    title: str, radius: float, pushes: Sequence[Push], *, logged: bool = False
 ) -> tuple[RenderableType, ...]:
     """Return how well the table predicts as it grows, and the whole of it beside simpler rules.
 
@@ -27,13 +27,14 @@ def prediction_tables(
         title: whose table.
         radius: how near a row must start to predict a movement (in).
         pushes: what was predicted, and what was seen.
+        logged: they are the trials of a log, not fresh.
     """
     growing = scores(pushes)
+    what = "logged trials, each predicted by the others" if logged else "fresh pushes predicted"
     moved = sum(push.moved for push in pushes)
     table = Sheet(
         ("rows", "hits", "false alarms", *ERROR_COLUMNS),
-        title=f"{title}: {len(pushes)} fresh pushes predicted, {moved} of which moved the "
-        "attractor",
+        title=f"{title}: {len(pushes)} {what}, {moved} of which moved the attractor",
         caption="hits: of those that moved it; false alarms: of the others (95 % intervals)\n"
         "degrees, inches: half of the hits are off by less; 95 %: so many are\n"
         f"rows: the first learned; the nearest predicts, if it lies within {radius:g} in",

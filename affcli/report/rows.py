@@ -11,6 +11,7 @@ from affcli.analysis.paper import PLANNER
 from affcli.analysis.regions import UNKNOWN
 from affcli.core.affordance import Affordance, is_probable
 from affcli.core.geometry import Point, direction_degrees
+from affcli.core.log import LogFile, LogLine
 from affcli.core.observation import Observation
 from affcli.core.records import LearningRunInfo, StoredReplication, StoredRow, StoredStep
 from affcli.core.specs import TrialSpec
@@ -20,6 +21,8 @@ from affcli.report.words import call_words, degrees_of, fixed, many, movement_ce
 DIRECTIONS = "degrees: 0 right, 90 away from the robot, 180 left"
 USUAL_BINDING = "grasp 1"
 
+Line = tuple[LogFile, LogLine]
+"""Where a row stands in a log."""
 Use = tuple[StoredStep, TrialSpec]
 """A step that tried a row, and the trial it is part of."""
 
@@ -71,6 +74,7 @@ def row_tables(
     run: LearningRunInfo,
     history: Sequence[Use],
     tries: Sequence[StoredReplication] = (),
+    line: Line | None = None,
 ) -> tuple[RenderableType, ...]:
     """Return one row in full, its two observation vectors, and all that tried it.
 
@@ -80,9 +84,10 @@ def row_tables(
         run: which made it.
         history: the steps of trials that tried it.
         tries: those of verifications that updated the table.
+        line: where it stands, if its run was imported from a log.
     """
     verified = (_tries(tries),) if tries else ()
-    facts, observations = _facts(stored, region, run), _observations(stored.row)
+    facts, observations = _facts(stored, region, run, line), _observations(stored.row)
     return facts, observations, _history(history), *verified
 
 
@@ -92,6 +97,7 @@ def row_json(
     run: LearningRunInfo,
     history: Sequence[Use],
     tries: Sequence[StoredReplication] = (),
+    line: Line | None = None,
 ) -> dict[str, Any]:
     """Return what `row_tables` shows as JSON types."""
     row = stored.row
@@ -101,6 +107,9 @@ def row_json(
         "start": row.start._asdict(),
         "end": row.end._asdict(),
         "learned": {"session": run.session_id, "seed": run.spec.seed, "robot": run.spec.robot},
+        "logged": None
+        if line is None
+        else {**line[0]._asdict(), "line": line[1].line, "object": line[1].object},
         "history": [_use_json(step, trial) for step, trial in history],
         "verifications": [
             {**one._asdict(), "expected": one.expected[:2], "seen": one.seen[:2]} for one in tries
@@ -108,16 +117,20 @@ def row_json(
     }
 
 
-def _facts(stored: StoredRow, region: str, run: LearningRunInfo) -> Sheet:
+def _facts(stored: StoredRow, region: str, run: LearningRunInfo, line: Line | None) -> Sheet:
     """Return what was done, what is expected of it, and how far it may be trusted."""
     row, moved = stored.row, stored.row.expected_movement
     part = "" if run.session_id is None else f", robot {run.spec.robot} of session {run.session_id}"
-    angle = round(math.degrees(row.wrist_angle), 1)
+    angle = 0.0 if math.isnan(row.wrist_angle) else round(math.degrees(row.wrist_angle), 1)
     turned = f", the wrist at {angle:g} degrees" if angle else ""
     near = "" if region == UNKNOWN else f", nearest the {region}"
+    whence = f"seed {run.spec.seed}{part}"
+    if line is not None:
+        file, at = line
+        whence = f"{file.name}, line {at.line}" + (f", object {at.object}" if at.object else "")
     facts = {
         "tool": stored.tool,
-        "learned": f"step {row.step} of run {run.id} (seed {run.spec.seed}{part})",
+        "learned": f"step {row.step} of run {run.id} ({whence})",
         "done": f"{call_words(row.binding)}, then {call_words(row.exploratory)}{turned}",
         "attractor from wrist": f"{_place(row.start.wrist_to_object)} in{near}",
         "expected movement": f"{moved.distance:.1f} in at {degrees_of(moved.dx, moved.dy)} degrees",

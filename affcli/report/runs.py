@@ -3,11 +3,15 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from affcli.core.log import LogSource
 from affcli.core.records import Belongings, LearningRunInfo
 from affcli.core.results import BehaviorGroup
 from affcli.report.learning import groups_json, groups_table, run_json
 from affcli.report.sheet import Sheet
-from affcli.report.words import call_words, clock, many, run_words
+from affcli.report.words import call_words, clock, fixed, many, run_words, seed_words
+
+SOME = 3
+"""So many files of a log are named; `affcli sql "select * from log_file"` has all."""
 
 Uses = Mapping[int, tuple[int, int]]
 """How many trials and verifications used a run, by its id; of those used at all."""
@@ -25,8 +29,8 @@ def runs_table(runs: Sequence[LearningRunInfo], uses: Uses) -> Sheet:
         table.add(
             str(run.id),
             run.spec.tool,
-            str(run.spec.seed),
-            f"{run.robot_seconds / 60.0:.1f}",
+            seed_words(run.spec),
+            fixed(run.robot_seconds / 60.0, 1),
             *(str(run.behaviors), str(run.rows), str(uses.get(run.id, (0, 0))[0])),
             run.started_at[:10],
             "; ".join(_unusual(run)) or "defaults",
@@ -47,9 +51,19 @@ def _unusual(run: LearningRunInfo) -> Iterator[str]:
 
 
 def run_tables(
-    run: LearningRunInfo, belongings: Belongings, groups: Sequence[BehaviorGroup] | None
+    run: LearningRunInfo,
+    belongings: Belongings,
+    groups: Sequence[BehaviorGroup] | None,
+    log: LogSource | None = None,
 ) -> tuple[Sheet, ...]:
-    """Return one run in full, and what it learned by behavior unless that was not kept."""
+    """Return one run in full, and what it learned by behavior unless that was not kept.
+
+    Args:
+        run: which.
+        belongings: what used its table.
+        groups: what it learned by behavior; None where that was not kept.
+        log: where it comes from, if it was imported.
+    """
     spec = run.spec
     wanted = (
         f"{spec.hours:g} h" if spec.hours is not None else many(spec.behaviors or 0, "behavior")
@@ -60,7 +74,7 @@ def run_tables(
         "note": run.note or "none",
         "status": run.status if run.status == "done" else "unfinished; --resume goes on",
         "begun": f"{run.started_at[:16].replace('T', ' ')} UTC",
-        "asked for": f"{wanted}, seed {spec.seed}{part}",
+        "asked for": wanted if spec.logged else f"{wanted}, seed {spec.seed}{part}",
         "did": f"{clock(run.robot_seconds)}, {many(run.behaviors, 'behavior')}, "
         f"{many(run.rows, 'row')}, {many(run.resets, 'reset')}",
         "differs from the defaults": run_words(spec),
@@ -68,10 +82,23 @@ def run_tables(
         "behaviors": ", ".join(call_words(one.call) for one in spec.repertoire),
         "made with": ", ".join(f"{name} {one}" for name, one in run.versions.items()),
         "used by": use_words(belongings),
+        **({} if log is None else _log_facts(log)),
     }
     sheet = Sheet(tuple(facts), title=f"Run {run.id}", records=True)
     sheet.add(*facts.values())
     return (sheet,) if groups is None else (sheet, groups_table(run, groups))
+
+
+def _log_facts(log: LogSource) -> dict[str, str]:
+    """Return where a run comes from."""
+    return {
+        "log": log.source,
+        "licence": log.licence or "not known",
+        "citation": log.citation or "not known",
+        "files": ", ".join(f"{one.name} (SHA-256 {one.sha256[:12]})" for one in log.files[:SOME])
+        + (f" and {len(log.files) - SOME} more" if len(log.files) > SOME else ""),
+        "lines left out": str(log.left_out),
+    }
 
 
 def use_words(belongings: Belongings) -> str:
@@ -97,7 +124,10 @@ def kept_json(run: LearningRunInfo, uses: Uses) -> dict[str, Any]:
 
 
 def run_in_full_json(
-    run: LearningRunInfo, belongings: Belongings, groups: Sequence[BehaviorGroup] | None
+    run: LearningRunInfo,
+    belongings: Belongings,
+    groups: Sequence[BehaviorGroup] | None,
+    log: LogSource | None = None,
 ) -> dict[str, Any]:
     """Return what `run_tables` shows as JSON types."""
     spec = run.spec
@@ -110,4 +140,7 @@ def run_in_full_json(
         "steps": belongings.steps,
         "tries": belongings.tries,
         "groups": None if groups is None else groups_json(groups),
+        "log": None
+        if log is None
+        else {**log._asdict(), "files": [f._asdict() for f in log.files]},
     }

@@ -77,17 +77,19 @@ class ShownTables:
     key: Mapping[RowStatus, str]
 
 
+ORIGIN = "all arrows from one origin, for the log does not say where the tool was"
 EXCLUDED = "excluded: replication probability 1/2 or below"
 
 
 def run_shown(run: LearningRunInfo, rows: Sequence[Affordance], puck_radius: float) -> ShownTables:
     """Return the table of a learning run as it is now: excluded rows are told apart."""
     view = _view("", run, run.spec.held, None, puck_radius, rows, current(rows))
+    origin = "" if all(map(Affordance.is_placed, rows)) else ORIGIN
     left_out = view.count(RowStatus.EXCLUDED)
     counted = many(len(rows), "row") + (f", {left_out} of them excluded" if left_out else "")
     title = f"What the {tool_words(run.spec.tool)} affords"
     key = {RowStatus.LIVE: "live row of the affordance table", RowStatus.EXCLUDED: EXCLUDED}
-    return _shown(title, counted, (run,), [view], key, run.spec.held)
+    return _shown(title, joined(counted, origin), (run,), [view], key, run.spec.held)
 
 
 def runs_compared(
@@ -162,7 +164,7 @@ def trial_shown(
 def row_shown(stored: StoredRow, run: LearningRunInfo, puck_radius: float) -> tuple[Words, RowView]:
     """Return a row of an affordance table with what is said of it."""
     row, tool = stored.row, run.spec.held
-    left_out = unknown_shapes([tool]), _unknown_holds([row.binding])
+    left_out = _left_out([run], tool)
     title = f"Row {stored.id} of the {tool_words(tool.name)}'s affordance table"
     words = Words(title, joined(run_caption(run), *left_out))
     hold = known_hold(row.binding)
@@ -176,7 +178,7 @@ def _turned(row: Affordance, run: LearningRunInfo) -> float:
     """
     motions = (one.motion for one in run.spec.repertoire if one.call == row.exploratory)
     angle = turned_by(next(motions, ()))[-1]
-    if not row.truncated:
+    if not row.truncated or not row.is_placed():
         return angle
     free = free_turn(Pose(*row.start.wrist, row.wrist_angle), angle)
     return math.copysign(min(abs(angle), free), angle)
@@ -192,9 +194,16 @@ def _shown(
 ) -> ShownTables:
     """Return tables with a caption that names what is not drawn; the first run's behaviors."""
     calls = [one.call for one in runs[0].spec.repertoire]
-    left_out = unknown_shapes(tools), _unknown_holds(run.spec.binding for run in runs)
+    left_out = _left_out(runs, *tools)
     words = Words(title, joined(counted, run_caption(*runs), *left_out))
     return ShownTables(words, calls, views, key)
+
+
+def _left_out(runs: Sequence[LearningRunInfo], *tools: Tool) -> tuple[str, ...]:
+    """Return the lines that say what is not drawn, and why."""
+    if all(run.spec.logged for run in runs):
+        return ("no tool is drawn, for a log does not say what it looked like",)
+    return unknown_shapes(tools), _unknown_holds(run.spec.binding for run in runs)
 
 
 def _unknown_holds(bindings: Iterable[BehaviorCall]) -> str:

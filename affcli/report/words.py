@@ -1,6 +1,7 @@
 """Words and numbers as all reports write them."""
 
 import json
+import math
 import shlex
 from collections.abc import Iterable
 
@@ -16,6 +17,9 @@ from affcli.core.observation import Movement
 from affcli.core.specs import LearningSpec, SessionSpec, TrialSpec
 from affcli.core.tool import Tool
 from affcli.errors import one_line
+
+NOT_SAID = "-"
+"""In place of a number that a log does not say."""
 
 
 def many(count: int, noun: str) -> str:
@@ -36,14 +40,18 @@ def spread_words(robots: int) -> str:
 
 
 def clock(seconds: float) -> str:
-    """Return robot time as hours and minutes, or minutes and seconds below an hour."""
+    """Return robot time as hours and minutes, or minutes and seconds below an hour; - for NaN."""
+    if math.isnan(seconds):
+        return NOT_SAID
     minutes, rest = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     return f"{hours} h {minutes:02} min" if hours else f"{minutes} min {rest:02} s"
 
 
 def fixed(value: float, digits: int) -> str:
-    """Return a number with so many digits, a plain 0 for the -0 that rounding may give."""
+    """Return a number with so many digits, a plain 0 for the -0 of rounding; - for NaN."""
+    if math.isnan(value):
+        return NOT_SAID
     return f"{round(value, digits) + 0.0:.{digits}f}"
 
 
@@ -149,8 +157,19 @@ def parts_words(spec: LearningSpec | SessionSpec) -> str:
     return ", ".join(f"{kind} {one_line(text)}" for kind, text in parts.items())
 
 
+def seed_words(spec: LearningSpec | SessionSpec) -> str:
+    """Return the seed of a run; - for what was imported from a log."""
+    return NOT_SAID if spec.logged else str(spec.seed)
+
+
 def run_words(spec: LearningSpec | SessionSpec) -> str:
-    """Return settings, parts and sensor of a run, as far as they are not the usual ones."""
+    """Return settings, parts and sensor of a run, as far as they are not the usual ones.
+
+    Of one that was imported from a log: that, and what tells it from other logs.
+    """
+    if spec.logged:
+        content = str(dict(spec.world.params).get("content", ""))
+        return f"from log {one_line(content.removeprefix('sha256-')[:8])}"
     words = [parts_words(spec), "" if spec.sensor == "noisy" else f"sensor {spec.sensor}"]
     settings = settings_words(spec.settings)
     if settings != "defaults" or not any(words):

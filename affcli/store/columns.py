@@ -70,6 +70,9 @@ COLUMNS: dict[str, tuple[str, ...]] = {
         *("tries_wanted", "until_verdict", "uses_before", "after_trial", "versions", "started_at"),
         *("verdict", "tries", "decided_after", "robot_seconds", "finished_at"),
     ),
+    "log": ("learning_run_id", "source", "licence", "citation", "map", "left_out"),
+    "log_file": ("learning_run_id", "number", "name", "sha256"),
+    "log_line": ("learning_run_id", "step", "file", "line", "object"),
     "replication": (
         *("verification_id", "affordance_id", "number", "clock", *_USE),
         *(*_each("true_start true_end", "x", "y", "angle"), "live", "died"),
@@ -79,7 +82,7 @@ COLUMNS: dict[str, tuple[str, ...]] = {
 JSON_COLUMNS = frozenset(
     {
         *("settings", "versions", "repertoire", "binding_params", "exploratory_params"),
-        *("checkpoint", "calibration", "reasons", "last_reasons", "definition"),
+        *("checkpoint", "calibration", "reasons", "last_reasons", "definition", "map"),
     }
 )
 """Columns that hold JSON."""

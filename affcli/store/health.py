@@ -63,9 +63,24 @@ CHECKS = {
     "the tries of a verification are numbered without a gap": """
         SELECT 'verification ' || verification_id FROM replication
         GROUP BY verification_id HAVING max(number) <> count(*)""",
+    "only a log leaves out what our robots see": """
+        SELECT 'affordance ' || a.id FROM affordance a JOIN learning_run r
+        ON r.id = a.learning_run_id AND r.world NOT LIKE 'log:%' WHERE
+        a.start_object_z + a.start_wrist_to_object_x + a.start_wrist_to_object_y
+        + a.start_tool_red + a.end_object_z + a.end_wrist_to_object_x + a.end_wrist_to_object_y
+        + a.wrist_angle + a.travel_x + a.travel_y IS NULL
+        UNION ALL SELECT 'behavior ' || b.step || ' of run ' || r.id FROM behavior b
+        JOIN learning_run r ON r.id = b.learning_run_id AND r.world NOT LIKE 'log:%' WHERE
+        b.clock + b.duration + b.place_x + b.wrist_start_x + b.wrist_end_x
+        + b.start_wrist_to_object_x + b.end_wrist_to_object_x IS NULL""",
+    "an imported run says where it comes from": """
+        SELECT 'run ' || id FROM learning_run r WHERE world LIKE 'log:%'
+        AND (SELECT count(*) FROM log_line l JOIN log g ON g.learning_run_id = l.learning_run_id
+        WHERE l.learning_run_id = r.id) <> behaviors""",
     # §3.2: both counters are 1 when a row is made; trials and verifications update them.
     "the counters of a row are those of its steps and tries": """
-        SELECT 'affordance ' || a.id FROM affordance a LEFT JOIN
+        SELECT 'affordance ' || a.id FROM affordance a JOIN learning_run r
+        ON r.id = a.learning_run_id AND r.world NOT LIKE 'log:%' LEFT JOIN
         (SELECT affordance_id, count(*) AS used, sum(replicated) AS successful FROM
         (SELECT affordance_id, replicated FROM step JOIN trial t ON t.id = trial_id
         WHERE t.counters = 'stored' UNION ALL SELECT affordance_id, replicated FROM replication)

@@ -9,6 +9,7 @@ from typing import Any
 import sqlalchemy as sa
 
 from affcli.core.affordance_table import AffordanceTable
+from affcli.core.log import LOG, LoggedTry
 from affcli.core.records import AlikeRun, ChangedPart, LearningRunInfo, StepScene, StoredRow
 from affcli.core.replay import Difference
 from affcli.core.specs import LearningSpec, LearningStep, RowStarts
@@ -175,21 +176,27 @@ class Learning:
             reading.learning_run(found[0])  # says why there is none
         return runs
 
-    def tools(self) -> frozenset[str]:
-        """Return the names of the tools with a finished run that stands for itself."""
-        wanted = sa.select(learning_run.c.tool).where(
-            used_in(None), learning_run.c.status == "done"
-        )
+    def tools(self, *, usable: bool = False) -> frozenset[str]:
+        """Return the names of the tools with a finished run that stands for itself.
+
+        Args:
+            usable: there must be a robot that can use it: it was not imported from a log.
+        """
+        wanted = sa.select(learning_run.c.tool).where(_finished(usable=usable))
         with self.database.reading() as connection:
             return frozenset(connection.scalars(wanted))
 
-    def latest(self, tool: str) -> LearningRunInfo | None:
+    def latest(self, tool: str, *, usable: bool = False) -> LearningRunInfo | None:
         """Return the finished run of `tool` that was begun last, no part of a reproduction.
+
+        Args:
+            tool: its name.
+            usable: as in `tools`.
 
         Raises:
             DatabaseError: it cannot be read; an older one does not take its place.
         """
-        wanted = selected_runs().where(used_in(None)).filter_by(tool=tool, status="done")
+        wanted = selected_runs().where(_finished(usable=usable)).filter_by(tool=tool)
         found = self.database.mappings(wanted.order_by(learning_run.c.id.desc()).limit(1))
         return reading.learning_run(found[0]) if found else None
 
@@ -260,6 +267,14 @@ class Learning:
             for row in made
             if row["true_start_x"] is not None
         }
+
+    def tries(self, run_id: int) -> tuple[LoggedTry, ...]:
+        """Return what each behavior of an imported run did, in their order."""
+        require_kept(self.database, "behaviors", learning_run.c.id == run_id)
+        wanted = sa.select(behavior).filter_by(learning_run_id=run_id).order_by(behavior.c.step)
+        found = self.database.mappings(wanted)
+        with reading.reading_what_was_written(f"learning run {run_id}"):
+            return tuple(map(reading.logged_try, found))
 
     def scene(self, run_id: int, number: int) -> StepScene:
         """Return one behavior of a learning run.
@@ -337,6 +352,13 @@ class Learning:
             *differences("behavior", kept, done),
             *(d for d in differences("affordance", kept_rows, made) if d.column not in COUNTERS),
         )
+
+
+def _finished(*, usable: bool) -> sa.ColumnElement[bool]:
+    """Tell whether a learning run is finished and stands for itself; and there is a robot."""
+    c = learning_run.c
+    own = sa.and_(used_in(None), c.status == "done")
+    return sa.and_(own, c.world.not_like(f"{LOG}:%")) if usable else own
 
 
 def used_in(session_id: int | None) -> sa.ColumnElement[bool]:

@@ -36,7 +36,7 @@ RUN_SUMS = ("behaviors", "rows", "resets", "redraws", "robot_seconds")
 TRIAL_SUMS = ("protocol", "tool", "planner", "outcome", "steps", "robot_seconds")
 """What two records of one run, or of one trial, must have alike: the rest follows from them."""
 LEFT_OUT = {
-    "learning runs of affcli learn": sa.select(learning_run).where(
+    "learning runs of affcli learn and import": sa.select(learning_run).where(
         learning_run.c.session_id.is_(None)
     ),
     "sessions of affcli solve and break-tool": sa.select(session).where(

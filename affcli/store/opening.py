@@ -24,6 +24,7 @@ from affcli.store.experiments import Experiments
 from affcli.store.faults import result_code
 from affcli.store.journal import set_journal_mode
 from affcli.store.learning import Learning
+from affcli.store.logs import Logs
 from affcli.store.migrate import run_migrations
 from affcli.store.results import Results
 from affcli.store.runs import Runs
@@ -59,6 +60,8 @@ class Store:
         """Testing trials, with the steps of each."""
         self.verifications = Verifications(database)
         """Verifications, with the tries of each."""
+        self.logs = Logs(database)
+        """Where imported runs come from."""
         self.results = Results(database)
         """Counts and sums for reports."""
         self.selections = Selections(database)

@@ -1,5 +1,6 @@
 """From rows to records. A value is checked once, here, where it is read."""
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import lru_cache
@@ -13,6 +14,7 @@ from affcli.core.choice import Reason, Reasons
 from affcli.core.geometry import Point, Pose
 from affcli.core.identity import Component
 from affcli.core.limits import LONGEST_HOURS, MOST_BEHAVIORS, MOST_ROBOTS
+from affcli.core.log import NOT_LOGGED, LoggedTry
 from affcli.core.observation import Movement, Observation, SensorKind
 from affcli.core.records import (
     ExperimentInfo,
@@ -92,6 +94,11 @@ def reasons(text: str) -> Reasons:
     return tuple(Reason.from_json(one) for one in json_value(text))
 
 
+def logged(value: float | None) -> float:
+    """Return a number; NaN where a log does not say it."""
+    return NOT_LOGGED if value is None else value
+
+
 def pose(row: Columns, name: str) -> Pose:
     """Return a pose from three columns."""
     return Pose(row[f"{name}_x"], row[f"{name}_y"], row[f"{name}_angle"])
@@ -113,13 +120,13 @@ def affordance(row: Columns) -> Affordance:
         step=row["step"],
         binding=behavior_call(row["binding_behavior"], row["binding_params"]),
         exploratory=behavior_call(row["exploratory_behavior"], row["exploratory_params"]),
-        start=Observation(*(row[name] for name in START_OBSERVATION)),
-        end=Observation(*(row[name] for name in END_OBSERVATION)),
+        start=Observation(*(logged(row[name]) for name in START_OBSERVATION)),
+        end=Observation(*(logged(row[name]) for name in END_OBSERVATION)),
         truncated=bool(row["truncated"]),
         times_used=row["times_used"],
         times_successful=row["times_successful"],
-        wrist_angle=row["wrist_angle"],
-        travel=point(row, "travel"),
+        wrist_angle=logged(row["wrist_angle"]),
+        travel=Point(logged(row["travel_x"]), logged(row["travel_y"])),
     )
 
 
@@ -139,7 +146,12 @@ def affordance_table(place: str, rows: Iterable[Columns], learned: LearningSpec)
     with reading_what_was_written(place):
         table = [affordance(row) for row in rows]
         for row in table:
-            if row.exploratory not in tried or row.binding.name != learned.binding.name:
+            known = learned.logged or not any(map(math.isnan, (*row.start, *row.end, *row.travel)))
+            if (
+                not known
+                or row.exploratory not in tried
+                or row.binding.name != learned.binding.name
+            ):
                 raise ValueError(f"row {row.step}: {row.binding}, {row.exploratory}")
         return AffordanceTable(table)
 
@@ -148,6 +160,20 @@ def stored_row(row: Columns) -> StoredRow:
     """Return a row of an affordance table."""
     with reading_what_was_written(f"affordance {row['id']}"):
         return StoredRow(row["id"], row["learning_run_id"], row["tool"], affordance(row))
+
+
+def logged_try(row: Columns) -> LoggedTry:
+    """Return what one behavior of an imported run did."""
+    start, end = point(row, "start_object"), point(row, "end_object")
+    offset = (logged(row[f"start_wrist_to_object_{axis}"]) for axis in "xy")
+    return LoggedTry(
+        row["step"],
+        behavior_call(row["exploratory_behavior"], row["exploratory_params"]),
+        start,
+        Point(*offset),
+        Movement(end.x - start.x, end.y - start.y, 0.0),
+        moved=bool(row["change_detected"]),
+    )
 
 
 def _at_most(value: float | None, most: float) -> Any:
@@ -186,7 +212,7 @@ def learning_run(row: Columns) -> LearningRunInfo:
     """Return a learning run; `row` has the definition of its tool too."""
     names = (
         *("id", "session_id", "status", "behaviors", "rows", "resets", "redraws"),
-        *("robot_seconds", "started_at", "note"),
+        *("started_at", "note"),
     )
     with reading_what_was_written(f"learning run {row['id']}"):
         return LearningRunInfo(
@@ -194,6 +220,7 @@ def learning_run(row: Columns) -> LearningRunInfo:
             versions=dict(json_value(row["versions"])),
             checkpoint=None if row["checkpoint"] is None else dict(json_value(row["checkpoint"])),
             kept=Keep(row["kept"]),
+            robot_seconds=logged(row["robot_seconds"]),
             **{name: row[name] for name in names},
         )
 

@@ -6,6 +6,8 @@ from typing import Any
 
 import sqlalchemy as sa
 
+from affcli.core.affordance import PROBABILITY_THRESHOLD
+from affcli.core.effects import Effect, Way
 from affcli.core.results import (
     BehaviorGroup,
     Cell,
@@ -66,6 +68,33 @@ class Results:
         rows = self._all(wanted)
         with reading_what_was_written(f"learning run {run_id}"):
             return tuple(BehaviorGroup(behavior_call(n, p), *rest) for n, p, *rest in rows)
+
+    def effects(self, run_id: int, way: Way, inches: float) -> tuple[Effect, ...]:
+        """Return how often each behavior moved the attractor a way by more than so many inches."""
+        require_kept(self.database, "behaviors", learning_run.c.id == run_id)
+        b, a, along = behavior.c, affordance.c, way.direction
+        far = along.x * (b.end_object_x - b.start_object_x) + along.y * (
+            b.end_object_y - b.start_object_y
+        )
+        alive = a.times_successful > PROBABILITY_THRESHOLD * a.times_used
+        made_here = sa.and_(a.learning_run_id == b.learning_run_id, a.step == b.step)
+        wanted = (
+            sa.select(
+                b.exploratory_behavior,
+                b.exploratory_params,
+                sa.func.count(),
+                sa.func.sum(sa.case((far > inches, 1), else_=0)),
+                sa.func.count(a.id),
+                sa.func.sum(sa.case((alive, 1), else_=0)),
+            )
+            .select_from(behavior.outerjoin(affordance, made_here))
+            .where(b.learning_run_id == run_id)
+            .group_by(b.exploratory_behavior, b.exploratory_params)
+            .order_by(b.exploratory_behavior, b.exploratory_params)
+        )
+        rows = self._all(wanted)
+        with reading_what_was_written(f"learning run {run_id}"):
+            return tuple(Effect(behavior_call(n, p), *rest) for n, p, *rest in rows)
 
     def success_counts(self, session_id: int) -> tuple[SuccessCount, ...]:
         """Return the successes of a session by robot, protocol, tool, shape, goal and planner.

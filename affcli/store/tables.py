@@ -19,6 +19,9 @@ trial = TABLES["trial"]
 step = TABLES["step"]
 verification = TABLES["verification"]
 replication = TABLES["replication"]
+log = TABLES["log"]
+log_file = TABLES["log_file"]
+log_line = TABLES["log_line"]
 
 wide = sa.table(
     "affordance_wide",

@@ -24,13 +24,14 @@ WRITERS: tuple[Args, ...] = (
     ("reproduce", "--seed", "SEED", "--robots", "2", "--workers", "1", "--config", "settings.toml"),
     ("reproduce", "--resume", "--workers", "1"),
     ("experiment", "two.toml", "--workers", "1"),
+    ("import", "log.txt", "--map", "map.toml"),
     ("db", "merge", "other.db"),
     ("db", "backup", "--out", "copy.db", "--force"),
     ("db", "upgrade"),
 )
 """What writes into a database, or a copy of it; `db upgrade` is given one of an older schema."""
 WRITING = {"learn", "solve", "break-tool", "reproduce", "db upgrade", "db backup"}
-WRITING |= {"experiment", "runs note", "runs delete", "db merge"}
+WRITING |= {"experiment", "import", "runs note", "runs delete", "db merge"}
 NOT_THERE = {"compare", "figure compare", "figure plan"}
 """What needs two conditions of one seed, or a plan, which the database under attack has not."""
 MOST_READ = {"figure", "report", "replay"}
@@ -152,6 +153,8 @@ NEED: dict[str, Args] = {
     "runs note": ("1", "seen"),
     "runs delete": ("2", "--yes"),
     "experiment": ("two.toml", "--workers", "1"),
+    "import": ("log.txt", "--map", "map.toml"),
+    "which": ("nearer",),
     "figure row": ("1", "--out", "new.svg", "--force"),
     "figure plan": ("1", "1", "--out", "new.svg", "--force"),
     "figure trial": ("1", "--out", "new.svg", "--force"),

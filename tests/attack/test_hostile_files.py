@@ -18,6 +18,8 @@ from tests.cli.forked import Forked
 from tests.cli.program import done, refused
 from tests.fuzz.running import check_ending
 
+SLOWER = 3.0
+"""A machine that does other things too may take so much longer than the two seconds of the bar."""
 MEMORY = 200_000_000
 """Bytes that a command may take beyond what the program has when it is idle."""
 
@@ -121,6 +123,37 @@ PICTURES: dict[str, Callable[[], bytes]] = {
     "scans": scans,
 }
 NUMBERS = json.dumps({str(n): n for n in range(6000)})
+MAP = """
+[log]
+source = "x"
+[columns]
+tool = 1
+behavior = 2
+start_x = 3
+start_y = 4
+end_x = 5
+end_y = 6
+"""
+LOGS = {
+    "trials": "a b 0 0 9 9\n" * 80_000,
+    "tools": "".join(f"t{n} b 0 0 9 9\n" for n in range(29_000)),
+    "behaviors": "".join(f"t b{n} 0 0 9 9\n" for n in range(29_000)),
+    "objects": "".join(f"a b 0 0 {n % 7} 9\n" for n in range(29_000)),
+    "a long line": "a" * 999_000,
+    "a line of columns": "a " * 490_000,
+    "lines": "\n" * 999_000,
+    "bad lines": "x\n" * 490_000,
+    "bad numbers": "a b 0 0 9 x\n" * 80_000,
+    "digits": "a b 0 0 9 " + "9" * 900_000,
+    "quotes": 'a,"' + '""' * 490_000,
+}
+MAPS = {
+    "lists": MAP + "x = " + "[" * 999_000,
+    "names": MAP + "[names.tool]\n" + "".join(f"k{n} = 'a{n}'\n" for n in range(50_000)),
+    "parameters": MAP + "[parameters]\n" + "".join(f"k{n} = 1\n" for n in range(70_000)),
+    "a long source": MAP.replace('"x"', f'"{"x" * 900_000}"'),
+}
+"""Logs and the maps by which they are read."""
 CORNERS = [["handle", [[n, n * n] for n in range(5000)]]]
 MANY = {
     "many settings": ("learning_run", "settings", NUMBERS),
@@ -198,6 +231,24 @@ def test_every_small_text_is_read_or_refused_in_little_memory(
     for name, text in some(CALIBRATIONS, torture):
         (known / "odd.json").write_text(text)
         took[f"calibration: {name}"] = suffered(program, known, *locate, "odd.json")
+    tell(slowest(took))
+
+
+@pytest.mark.fault(42)
+@pytest.mark.torture
+def test_every_small_log_is_read_or_refused_in_little_memory(
+    program: Forked, known: Path, torture: bool, tell: Callable[[str], None]
+) -> None:
+    took = {}
+    called = ("import", "odd.txt", "--map", "odd.toml", "--db", "odd.db")
+    for kind, files in (("log", LOGS), ("map", MAPS)):
+        for name, text in some(files, torture):
+            (known / "odd.txt").write_text(text if kind == "log" else "a b 0 0 9 9\n")
+            (known / "odd.toml").write_text(text if kind == "map" else MAP)
+            (known / "odd.db").unlink(missing_ok=True)
+            took[f"{kind}: {name}"] = suffered(program, known, *called)
+            assert took[f"{kind}: {name}"] < 2.0 * SLOWER
+    (known / "odd.db").unlink(missing_ok=True)
     tell(slowest(took))
 
 

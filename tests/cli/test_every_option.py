@@ -13,7 +13,8 @@ DROP = "x'); DROP TABLE learning_run; --"
 REQUIRED = {"--goal": "1", "--out": "out.csv", "query": "select 1", "row": "1", "number": "1"}
 REQUIRED |= {"--robots": "1", "--workers": "1"}  # all else would be done, too, and take its time
 REQUIRED |= {"row_id": "1", "--calibration": "none.json", "image": "none.png"}
-REQUIRED |= {"run_id": "1", "text": "x"}
+REQUIRED |= {"run_id": "1", "text": "x", "way": "nearer"}
+REQUIRED |= {"files": "none.txt", "--map": "none.toml"}
 FREE = "text"
 """An argument that may be any text: a note."""
 ELSEWHERE = ("--db", "--out", "--html", "--gif", "--video")

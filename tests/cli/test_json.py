@@ -10,6 +10,7 @@ from affcli.store import open_store
 from tests.cli.program import affcli, done
 from tests.cli.test_every_option import commands
 from tests.readmes import QUOTED, blocks, table_rows
+from tests.states.commands import LOG, MAP
 from tests.store.conditions import stored_conditions
 
 COMMANDS = "affcli/cli/README.md"
@@ -34,6 +35,7 @@ GIVEN = {
     "replay --run": "1",
     "table show": "17",
     "runs show": "1",
+    "which": "nearer",
 }
 """What a command needs to answer, or to answer soon."""
 
@@ -85,7 +87,7 @@ def keys_of(documented: str) -> list[str]:
 
 
 OF_NO_USED_DATABASE = {"camera", "list", "settings", "sql", "compare", "power", "experiment"}
-OF_NO_USED_DATABASE |= {"check"}
+OF_NO_USED_DATABASE |= {"check", "import"}
 OF_A_DATABASE = [one for one in DOCUMENTED if one.split()[0] not in OF_NO_USED_DATABASE]
 
 
@@ -123,6 +125,14 @@ def test_what_is_said_of_a_file_has_its_keys(tmp_path: Path) -> None:
     file.write_text(EXPERIMENT)
     (result,) = answer("check", None, file)
     assert list(result) == DOCUMENTED["check"]
+
+
+def test_what_is_said_of_a_log_has_its_keys(tmp_path: Path) -> None:
+    file, how = tmp_path / "log.txt", tmp_path / "map.toml"
+    file.write_text(LOG)
+    how.write_text(MAP)
+    results = answer("import", tmp_path / "log.db", file, "--map", how)
+    assert {tuple(result) for result in results} == {tuple(DOCUMENTED["import"])}
 
 
 @pytest.mark.parametrize("documented", ["list", "settings"])

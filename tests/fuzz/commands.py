@@ -46,6 +46,10 @@ PLAUSIBLE: dict[str, tuple[str, ...]] = {
     "R": ("-0.5", "0", "0.9"),
     "IN": ("5", "2.5"),
     "MM": ("4.8",),
+    "LOG...": ("log.txt", "log.txt", "settings.toml", "folder", "*.txt"),
+    "MAP.toml": ("map.toml", "map.toml", "settings.toml", "none.toml"),
+    "WAY": ("nearer", "farther", "left", "right"),
+    "LENGTH": ("2in", "5cm", "0.1"),
     "QUERY": ("select * from affordance_table", "select * from trial, step"),
 }
 """By the word that stands for a value. No number lets a command run for hours."""

@@ -11,7 +11,7 @@ from affcli.store import open_store
 from tests.cli.program import done
 from tests.factories import learning_spec
 from tests.lab.quick import NOW
-from tests.states.commands import EXPERIMENT, SETTINGS
+from tests.states.commands import EXPERIMENT, LOG, MAP, SETTINGS
 
 
 def furnish(folder: Path) -> None:
@@ -36,6 +36,8 @@ def furnish(folder: Path) -> None:
     run("reproduce", "--robots", "1", "--seed", "1", "--workers", "1", "--config", settings)
     interrupt(filled)
     (folder / "two.toml").write_text(EXPERIMENT)
+    (folder / "log.txt").write_text(LOG)
+    (folder / "map.toml").write_text(MAP)
     done("experiment", "two.toml", "--workers", "1", "--db", folder / "other.db", cwd=folder)
     done("learn", "--tool", "stick", "--behaviors", "1", "--db", folder / "empty.db")
     done("camera", "calibrate", "--out", folder / "calibration.json")

@@ -34,6 +34,19 @@ name = "paper"
 name = "fewer"
 planner = "nested-query:share=0.05"
 """
+MAP = """
+[log]
+source = "made up"
+[columns]
+tool = 1
+behavior = 2
+start_x = 3
+start_y = 4
+end_x = 5
+end_y = 6
+"""
+LOG = "rake draw 0 20 0 12\nrake draw 1 20 1 13\nstick draw 0 20 0 20\nstick push 0 20 0 26\n"
+"""A log of another robot, and how it is read."""
 OTHER = "other.db"
 """What is merged: the database that the commands before made."""
 CHUNK = 20
@@ -76,6 +89,7 @@ WRITING = {
     "verify --update": Writing("verify --update --rows 4", (LEARN,), anew=True),
     "reproduce": Writing("reproduce --robots 2 --workers 1 --config settings.toml"),
     "experiment": Writing(LIVED),
+    "import": Writing("import log.txt --map map.toml"),
     "runs note": Writing("runs note 1 seen", (LEARN,)),
     "runs delete": Writing("runs delete 2 --yes", USED, once="it was deleted"),
     "db merge": Writing(f"db merge {OTHER} --into {DATABASE}", (LIVED,)),
@@ -163,8 +177,8 @@ def _given(one: Any, name: str) -> str:
         return f"{option} out.{ending}"
     if one.metavar == "QUERY":
         return "'select * from affordance_table'"
-    if one.metavar == "STEP":
-        return "1"
+    if one.metavar in {"STEP", "WAY"}:
+        return {"STEP": "1", "WAY": "nearer"}[one.metavar]
     named = {"figure trial": "trial", "runs show": "learning_run"}
     table = named.get(name) or LATEST.get(option) or LATEST[one.metavar]
     return f"{option} {{{table}}}"

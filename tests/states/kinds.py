@@ -19,7 +19,16 @@ import sqlalchemy as sa
 
 from affcli.store.database_file import REVISION
 from tests.cli.program import done
-from tests.states.commands import DATABASE, EXPERIMENT, OTHER, SETTINGS, Writing, called
+from tests.states.commands import (
+    DATABASE,
+    EXPERIMENT,
+    LOG,
+    MAP,
+    OTHER,
+    SETTINGS,
+    Writing,
+    called,
+)
 
 OLD_DATABASES = Path(__file__).parents[1] / "store" / "databases"
 
@@ -167,6 +176,8 @@ def prepare(command: Writing, folder: Path) -> None:
     folder.mkdir()
     (folder / "settings.toml").write_text(SETTINGS)
     (folder / "two.toml").write_text(EXPERIMENT)
+    (folder / "log.txt").write_text(LOG)
+    (folder / "map.toml").write_text(MAP)
     if command.revision:
         shutil.copyfile(OLD_DATABASES / f"{command.revision}.db", folder / DATABASE)
     for line in command.before:

@@ -156,7 +156,7 @@ def writing_anew(path: Path) -> str:
 def killed_while_migrating(path: Path) -> None:
     """Make the schema in one child after another, each killed at a later statement."""
     warm_up(path)
-    for statement in range(1, 150):
+    for statement in range(1, 300):
         status = killed_at(statement, path)
         driver = sqlite3.connect(path)
         tables = driver.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
@@ -170,7 +170,7 @@ def killed_while_migrating(path: Path) -> None:
 def killed_while_upgrading(path: Path) -> None:
     """Upgrade the database in one child after another, each killed at a later statement."""
     warm_up(path)
-    for statement in range(1, 150):
+    for statement in range(1, 300):
         status = killed_at(statement, path)
         driver = sqlite3.connect(path)
         whole = "\n".join(driver.iterdump())

@@ -301,5 +301,8 @@ def test_what_is_not_merged_is_told(tmp_path: Path) -> None:
         begun(store, "break-tool")
     assert merge([tmp_path / "a.db"], tmp_path / "all.db", NOW) == Merged(
         *(0, 0),
-        {"learning runs of affcli learn": 1, "sessions of affcli solve and break-tool": 2},
+        {
+            "learning runs of affcli learn and import": 1,
+            "sessions of affcli solve and break-tool": 2,
+        },
     )

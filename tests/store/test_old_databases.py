@@ -52,6 +52,12 @@ LEARNED: dict[str, tuple[tuple[str, tuple[str, ...], tuple[str, int, int]], ...]
         ("stick", (), ("camera", 5, 3)),
         ("l-stick", (), ("noisy", 7, 24)),
     ),
+    "0006": (
+        ("t-hook", ("trial.max_steps=5",), ("noisy", 5, 60)),
+        ("l-hook", (), ("noisy", 2, 16)),
+        ("stick", (), ("camera", 5, 3)),
+        ("l-stick", (), ("noisy", 7, 24)),
+    ),
 }
 """The runs of each database: tool, settings, then sensor, seed and behaviors of the command."""
 CASES = [(revision, *run) for revision, runs in LEARNED.items() for run in runs]
@@ -216,7 +222,7 @@ def test_trials_are_replayed_equal(revision: str, upgraded: dict[str, Path]) -> 
             assert replay_trial(store, trial).differences == ()
 
 
-@pytest.mark.parametrize("revision", ["0003", "0004", "0005"])
+@pytest.mark.parametrize("revision", ["0003", "0004", "0005", "0006"])
 def test_an_interrupted_run_goes_on_as_if_it_had_not_been(revision: str, tmp_path: Path) -> None:
     """From a checkpoint of an older revision: the same rows as when it is run in one go."""
     path, now = old_database(revision, tmp_path), "2026-01-02T03:04:05+00:00"

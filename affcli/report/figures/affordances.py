@@ -93,7 +93,7 @@ def affordances_figure(
 
 def _panel_of(row: Affordance) -> _Panel:
     """Return the panel that a row is drawn in."""
-    return _Panel(row.exploratory, round(math.degrees(row.wrist_angle)))
+    return _Panel(row.exploratory, row.wrist_degrees)
 
 
 def _groups(calls: Sequence[BehaviorCall], of_rows: Sequence[_Panel]) -> list[list[_Panel]]:
@@ -126,13 +126,16 @@ def _draw_table(
     page: FigureBase, view: TableView, shown: Sequence[_Panel], columns: int, room: float
 ) -> list[Axes]:
     """Draw one table in so many columns of panels; return the panels."""
-    labels = "x from the wrist (in)", "y from the wrist (in)"
+    placed = not view.rows or any(row.is_placed() for row, _ in view.rows)
+    whence = "from the wrist" if placed else "moved"
+    labels = f"x {whence} (in)", f"y {whence} (in)"
     panels = map_panels(page, len(shown), columns, labels)
     for axes, panel in zip(panels, shown, strict=True):
         _draw_panel(axes, view, panel, room)
     if view.heading:
         page.suptitle(wrapped(view.heading, 8.0, columns * room), fontsize=8.0)
-    _draw_scale(panels[0], view)
+    if placed:
+        _draw_scale(panels[0], view)
     return panels
 
 
@@ -164,7 +167,7 @@ def _draw_panel(axes: Axes, view: TableView, panel: _Panel, room: float) -> None
 
 def _arrow(row: Affordance) -> Arrow:
     """Return a row's movement as an arrow in the wrist's frame."""
-    start, moved = row.start.wrist_to_object, row.expected_movement
+    start, moved = row.drawn_at, row.expected_movement
     return start, Point(start.x + moved.dx, start.y + moved.dy)
 
 

@@ -1,5 +1,6 @@
 """One row of an affordance table, as the paper's table shows one (Fig. 5)."""
 
+import math
 from collections.abc import Iterable
 from typing import NamedTuple
 
@@ -64,12 +65,14 @@ def row_figure(view: RowView, width: float | None = None) -> Figure:
             axes.spines["top"].set(visible=True, linewidth=0.5)
         grasping, behavior, before, after, probability = cells
         _draw_tool(grasping, view, Pose(0.0, 0.0))
-        write.below(grasping, call_words(row.binding), "the cross is the grasp point")
+        cross = "the cross is the grasp point" if row.is_placed() else "where is not known"
+        write.below(grasping, call_words(row.binding), cross)
         write.into(behavior, behavior_words(row.exploratory), parameter_words(row.exploratory))
         if row.truncated:
             write.below(behavior, "cut short: it met the edge of the reach")
-        _draw_tool(before, view, Pose(0.0, 0.0, row.wrist_angle))
-        draw_puck(before, row.start.wrist_to_object, view.puck_radius)
+        if row.is_placed():
+            _draw_tool(before, view, Pose(0.0, 0.0, row.wrist_angle))
+        draw_puck(before, row.drawn_at, view.puck_radius)
         write.below(before, *_places(row.start))
         _draw_end(after, view)
         length = row.expected_movement.distance
@@ -97,13 +100,13 @@ def _draw_tool(axes: Axes, view: RowView, wrist: Pose) -> None:
 def _draw_end(axes: Axes, view: RowView) -> None:
     """Draw where tool and attractor came from and went to, and the detected movement."""
     row = view.row
-    wrist, moved = _wrist(row.start), _wrist(row.end)
-    began, x, y = row.start.wrist_to_object, *row.end.object_position
-    ended = Point(x - wrist.x, y - wrist.y)
-    draw_parts(axes, view.tool.parts, Pose(0.0, 0.0, row.wrist_angle), missing=True)
+    began, movement = row.drawn_at, row.expected_movement
+    ended = Point(began.x + movement.dx, began.y + movement.dy)
     draw_puck(axes, began, view.puck_radius, before=True)
-    angle = row.wrist_angle + view.turned
-    _draw_tool(axes, view, Pose(moved.x - wrist.x, moved.y - wrist.y, angle))
+    moved = Point(*(b - a for a, b in zip(_wrist(row.start), _wrist(row.end), strict=True)))
+    if not math.isnan(moved.x + moved.y):
+        draw_parts(axes, view.tool.parts, Pose(0.0, 0.0, row.wrist_angle), missing=True)
+        _draw_tool(axes, view, Pose(*moved, row.wrist_angle + view.turned))
     draw_puck(axes, ended, view.puck_radius)
     draw_arrows(axes, [(began, ended)], MOVED, head=1.2)
 
@@ -141,5 +144,7 @@ class _Pen(NamedTuple):
 def _places(seen: Observation) -> Iterable[str]:
     """Return what the robot keeps of an observation: coordinates (in, table frame)."""
     for what, place in (("attractor", seen.object_position), ("wrist", _wrist(seen))):
+        if math.isnan(place.x + place.y):
+            continue
         # Adding zero takes the sign from what rounds to zero.
         yield f"{what} ({round(place.x, 1) + 0.0:.1f}, {round(place.y, 1) + 0.0:.1f})"

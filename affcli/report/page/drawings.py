@@ -13,6 +13,11 @@ from affcli.report.words import call_title, call_words
 
 SECTORS = ("right", "away", "left", "toward")
 """Where a movement goes, by quarters of a turn: away from the robot is a push, toward it a pull."""
+LOGGED = (
+    "a log does not say what the tool looked like; where it does not say where it was either, all "
+    "arrows begin at one origin"
+)
+"""Of a run that was imported."""
 GRID = 5
 """Inches from one line of the grid to the next."""
 MARGIN = 1.6
@@ -116,7 +121,7 @@ def panels(
     grouped: dict[tuple[BehaviorCall, BehaviorCall, int], list[tuple[int, Affordance]]]
     grouped = {(call, binding, 0): [] for call in calls if call not in tried}
     for number, row in rows.items():
-        turn = round(math.degrees(row.wrist_angle))
+        turn = row.wrist_degrees
         grouped.setdefault((row.exploratory, row.binding, turn), []).append((number, row))
     made = []
 
@@ -139,7 +144,7 @@ def panels(
 
 def _arrow(tool: Tool, number: int, row: Affordance, excluded: Mapping[int, int] | None) -> Arrow:
     """Return a row as it is drawn."""
-    moved, start = row.expected_movement, row.start.wrist_to_object
+    moved, start = row.expected_movement, row.drawn_at
     gone = not is_probable(row.times_successful, row.times_used)
     return Arrow(
         number,

@@ -265,9 +265,9 @@ def _tool_section(learned: LearnedRows) -> dict[str, Any]:
         "panels": drawn,
         "frame": drawings.frame(drawn),
         "answer": answers.pulls(learned),
-        "clock": clock(learned.run.robot_seconds),
+        "time": "" if spec.logged else f" in {clock(learned.run.robot_seconds)}",
         "settings": run_words(spec),
-        "unknown": unknown_shapes([spec.held]),
+        "unknown": drawings.LOGGED if spec.logged else unknown_shapes([spec.held]),
         "excluded": any(arrow.excluded for panel in drawn for arrow in panel.arrows),
     }
 
