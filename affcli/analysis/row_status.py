@@ -38,7 +38,7 @@ def same_effect(one: Affordance, other: Affordance) -> bool:
     """
     return (
         one.exploratory == other.exploratory
-        and abs(one.wrist_angle - other.wrist_angle) <= SAME_WRIST_ANGLE
+        and not abs(one.wrist_angle - other.wrist_angle) > SAME_WRIST_ANGLE  # or not logged
         and _apart(one.start.wrist_to_object, other.start.wrist_to_object) <= MATCHING_DISTANCE**2
         and angle_between_degrees(one.expected_movement, other.expected_movement)
         <= REPLICATION_ANGLE_DEGREES

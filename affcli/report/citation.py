@@ -6,6 +6,7 @@
 from collections.abc import Iterable, Mapping
 
 from affcli import __version__
+from affcli.core.log import LogSource
 from affcli.errors import one_line
 
 PAPER = {
@@ -23,16 +24,19 @@ SOFTWARE = {
     "version": __version__,
     "year": "2026",
 }
+LONGEST_NOTE = 2_000
+"""Letters of what is said of a log."""
 SPECIAL = "\\{}$&#%_^~"
 """Characters that mean something to TeX; a version or a name is written without them."""
 
 
-def bibtex(made_with: Iterable[Mapping[str, str]] = ()) -> str:
-    """Return the two entries.
+def bibtex(made_with: Iterable[Mapping[str, str]] = (), logs: Iterable[LogSource] = ()) -> str:
+    """Return the two entries, and one of each log.
 
     Args:
         made_with: names and versions of what results were made with; each set of them stands once
             in the note of the software's entry.
+        logs: that were imported; each stands once.
     """
     sets = dict.fromkeys(
         ", ".join(f"{_plain(name)} {_plain(version)}" for name, version in one.items())
@@ -43,8 +47,20 @@ def bibtex(made_with: Iterable[Mapping[str, str]] = ()) -> str:
         (
             _entry("incollection", "stoytchev2008affordances", PAPER),
             _entry("software", "affcli", {**SOFTWARE, **note}),
+            *(_entry("misc", f"log{n}", one) for n, one in enumerate(_distinct(logs), 1)),
         )
     )
+
+
+def _distinct(logs: Iterable[LogSource]) -> list[dict[str, str]]:
+    """Return what is said of each log, once."""
+    found = []
+    for log in logs:
+        said = {"title": log.source, "note": log.citation, "howpublished": log.licence}
+        fields = {name: _plain(text, LONGEST_NOTE) for name, text in said.items() if text}
+        if fields not in found:
+            found.append(fields)
+    return found
 
 
 def _entry(kind: str, key: str, fields: Mapping[str, str]) -> str:
@@ -52,6 +68,6 @@ def _entry(kind: str, key: str, fields: Mapping[str, str]) -> str:
     return "\n".join([f"@{kind}{{{key},", *lines, "}\n"])
 
 
-def _plain(text: str) -> str:
+def _plain(text: str, longest: int = 60) -> str:
     """Return text from a database without what TeX would take for a command."""
-    return "".join(" " if letter in SPECIAL else letter for letter in one_line(text, 60))
+    return "".join(" " if letter in SPECIAL else letter for letter in one_line(text, longest))

@@ -207,6 +207,47 @@ def test_what_is_not_there_is_named(tmp_path: Path, words: tuple[str, ...], says
     assert not list(tmp_path.glob("*.db"))
 
 
+def test_its_source_is_cited_once(imported: Path) -> None:
+    text = done("cite", "--db", "log.db", cwd=imported).out
+    assert text.count("note = {Nobody, A log (2026)}") == text.count("@misc{log1,") == 1
+    assert "howpublished = {CC0}" in text
+    assert "world log}" in text
+
+
+OFFSETS = """
+[log]
+source = "made up"
+separator = "comma"
+[columns]
+tool = 1
+start_x = 2
+start_y = 3
+end_x = 4
+end_y = 5
+clock = 6
+[constants]
+behavior = "draw"
+offset_x = 1.0
+offset_y = 12.0
+"""
+
+
+def test_offsets_and_times_bring_back_what_needs_them(tmp_path: Path) -> None:
+    """Arrows begin where the tool was, tables are compared row by row, learning has a curve."""
+    (tmp_path / "map.toml").write_text(OFFSETS)
+    lines = [f"{tool},0,20,{n % 2},16,{10 * n + 10}" for tool in ("rake", "hoe") for n in range(9)]
+    (tmp_path / "log.csv").write_text("\n".join(lines))
+    done("import", "log.csv", "--map", "map.toml", cwd=tmp_path)
+    (row,) = done("table", "show", "1", "--json", cwd=tmp_path).results
+    assert row["from_wrist"] == [1.0, 12.0]
+    assert rows(tmp_path / "affcli.db", "SELECT robot_seconds FROM learning_run") == [(90.0,)] * 2
+    compared = ("figure", "affordances", "--run", "1", "--compare", "2", "--out", "a.svg")
+    assert "9 of 9 rows kept" in done(*compared, cwd=tmp_path).err
+    done("figure", "learning", "--run", "1", "--out", "b.svg", cwd=tmp_path)
+    done("figure", "row", "1", "--out", "c.svg", cwd=tmp_path)
+    done("report", "--html", "d.html", cwd=tmp_path)
+
+
 def test_a_map_is_checked(imported: Path) -> None:
     (found,) = done("check", "map.toml", "--json", cwd=imported).results
     assert (found["kind"], found["facts"]["licence"]) == ("map of a log", "CC0")

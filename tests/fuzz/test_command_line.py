@@ -13,8 +13,8 @@ from tests.fuzz.conftest import Fuzz
 from tests.fuzz.running import check_ending, check_json, files_in, is_sound
 
 DATABASES = ("filled.db", "empty.db")
-WRITING = ("learn", "solve", "break-tool", "reproduce", "db upgrade", "runs note", "runs delete")
-WRITING += ("import",)
+WRITING = {"learn", "solve", "break-tool", "reproduce", "db upgrade", "runs note", "runs delete"}
+WRITING |= {"import"}
 PLACES = ("--db", "--out", "--html", "--gif", "--video")
 """Options that name a file that may be written."""
 
