@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from affcli import lab, registry
-from affcli.cli.database import learned_runs, opened, say_trials, tool_or_default
+from affcli.cli.database import opened, say_trials, tool_or_default
 from affcli.cli.options import (
     DEFAULT_BROKEN,
-    DEFAULT_DATABASE,
     DEFAULT_PLANNER,
     DEFAULT_TASKS,
     AsJson,
@@ -22,8 +21,10 @@ from affcli.cli.options import (
     TaskSet,
     TrialSensor,
 )
-from affcli.cli.terminal import now, progress, show_either
+from affcli.cli.terminal import progress, show_either
 from affcli.errors import UsageError
+from affcli.lab.clock import now
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report.breaking import broken_json, broken_tables
 
 if TYPE_CHECKING:
@@ -57,7 +58,7 @@ def break_tool(
     if becomes and loses:
         raise UsageError("--becomes the tool that is left, or --loses parts: give one of them")
     with opened(database, write=True) as store:
-        (used,) = learned_runs(store, tool_or_default(tool, run), database, run, usable=True)
+        (used,) = lab.choosing.learned_runs(store, tool_or_default(tool, run), run, usable=True)
         name = used.spec.tool
         left = _left(used.spec, becomes, loses or ())
         events = lab.breaking.break_tool(store, used, left, seed, now, planner, sensor, task)

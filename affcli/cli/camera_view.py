@@ -8,20 +8,12 @@ import typer
 from affcli import lab
 from affcli.cli.database import opened
 from affcli.cli.files import require_new, save
-from affcli.cli.options import (
-    DEFAULT_DATABASE,
-    Changes,
-    Config,
-    Database,
-    Force,
-    Run,
-    Seed,
-    check_count,
-)
+from affcli.cli.options import Changes, Config, Database, Force, Run, Seed, check_count
 from affcli.cli.terminal import say
 from affcli.config import load_settings
 from affcli.core.records import StepScene
 from affcli.errors import UsageError, one_line
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.simulation.sensing import require_camera
 
 Out = Annotated[Path | None, typer.Option("--out", help="The picture, *.png.", metavar="FILE")]

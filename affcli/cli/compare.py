@@ -8,18 +8,11 @@ import typer
 from affcli import lab
 from affcli.cli.database import opened
 from affcli.cli.files import require_new, save
-from affcli.cli.options import (
-    DEFAULT_DATABASE,
-    LARGEST_ID,
-    AsJson,
-    Database,
-    Force,
-    checked_count,
-)
+from affcli.cli.options import LARGEST_ID, AsJson, Database, Force, checked_count
 from affcli.cli.terminal import say, show_either, show_text
 from affcli.core.names import one_of
-from affcli.core.specs import LIVES
 from affcli.errors import BadInputError, UsageError, one_line
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report.csv_table import csv_text
 from affcli.report.paired import COLUMNS, comparison_json, comparison_rows, comparison_tables
 from affcli.report.text_tables import latex, markdown
@@ -28,7 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from affcli.analysis.paired import Comparison
-    from affcli.store import Store
 
 
 def checked_by(text: str) -> list[str]:
@@ -110,7 +102,7 @@ def compare(
         require_new(out, force=force)
     with opened(database) as store:
         result = lab.conditions.compared(
-            store, conditions_named(store, experiment, sessions, 2), against, by
+            store, lab.conditions.conditions_named(store, experiment, sessions, 2), against, by
         )
     if form is None:
         show_either(
@@ -124,32 +116,6 @@ def compare(
         save(out, FORMATS[form](result).encode())
         count = len(result.totals) + len(result.cells)
         say(f"{count} differences, {len(result.same)} cells without: {one_line(out)}")
-
-
-def conditions_named(
-    store: "Store", experiment: str | None, sessions: list[int] | None, fewest: int
-) -> "list[lab.conditions.Condition]":
-    """Return the conditions that a command is about; UsageError when they are fewer than that."""
-    if experiment is not None and sessions:
-        raise UsageError(f"name an experiment or --session, not both; drop {one_line(experiment)}")
-    if experiment is not None:
-        found = lab.conditions.experiment_named(store, experiment)
-    else:
-        found = lab.conditions.sessions_named(store, sessions or [])
-    if len(found) >= fewest:
-        return found
-    if experiment is not None:
-        raise UsageError(
-            f"experiment {one_line(experiment)} has one condition; compare its session "
-            f"({found[0].session.id}) with another: --session"
-        )
-    named = ", ".join(one_line(one.name) for one in store.experiments.all())
-    there = ", ".join(str(s.id) for s in store.sessions.all(*LIVES) if s.status == "done")
-    wanted = " ".join(f"--session {number}" for number in range(1, fewest + 1))
-    raise UsageError(
-        f"name an experiment (there: {named or 'none yet'}), or sessions, as in {wanted} "
-        f"(finished: {there or 'none yet'})"
-    )
 
 
 def _checked_format(kind: str | None, out: Path | None) -> str | None:

@@ -8,9 +8,11 @@ import typer
 
 from affcli import store
 from affcli.cli.files import require_new
-from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database, Force
-from affcli.cli.terminal import now, progress, say, show_json, show_rows
+from affcli.cli.options import AsJson, Database, Force
+from affcli.cli.terminal import progress, say, show_json, show_rows
 from affcli.errors import DatabaseError, one_line
+from affcli.lab.clock import now
+from affcli.lab.suggesting import DEFAULT_DATABASE
 
 
 def upgrade(*, database: Database = DEFAULT_DATABASE) -> None:

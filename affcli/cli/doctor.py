@@ -2,10 +2,11 @@
 
 from dataclasses import asdict
 
-from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database
+from affcli.cli.options import AsJson, Database
 from affcli.cli.terminal import show_json, show_rows
 from affcli.errors import DatabaseError, one_line
 from affcli.lab.doctor import facts
+from affcli.lab.suggesting import DEFAULT_DATABASE
 
 
 def doctor(*, database: Database = DEFAULT_DATABASE, as_json: AsJson = False) -> int:

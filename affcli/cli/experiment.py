@@ -10,19 +10,13 @@ import typer
 from affcli import lab
 from affcli import store as stores
 from affcli.cli.database import opened, say_failed
-from affcli.cli.options import (
-    DEFAULT_DATABASE,
-    AsJson,
-    Database,
-    Resume,
-    Scheduler,
-    Workers,
-    checked_pool,
-)
-from affcli.cli.terminal import now, progress, say, show_either
+from affcli.cli.options import AsJson, Database, Resume, Scheduler, Workers, checked_pool
+from affcli.cli.terminal import progress, say, show_either
 from affcli.core.names import one_of
 from affcli.core.specs import Keep
 from affcli.errors import BadInputError, UsageError, one_line
+from affcli.lab.clock import now
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report.experiment import (
     Cost,
     cost_json,

@@ -6,11 +6,12 @@ from typing import Annotated
 import typer
 
 from affcli import lab
-from affcli.cli.compare import Against, By, Experiment, Sessions, conditions_named
+from affcli.cli.compare import Against, By, Experiment, Sessions
 from affcli.cli.database import opened
 from affcli.cli.figure import Figure, figure
-from affcli.cli.options import DEFAULT_DATABASE, Database
+from affcli.cli.options import Database
 from affcli.errors import UsageError
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report import figures
 from affcli.report.captions import comparison_words, conditions_words, experiment_words
 
@@ -29,7 +30,7 @@ def compare(
     What `affcli compare` says, a row a cell: filled where significant after the correction.
     """
     with opened(database) as store:
-        conditions = conditions_named(store, experiment, sessions, 2)
+        conditions = lab.conditions.conditions_named(store, experiment, sessions, 2)
         if len(conditions) > 1 + figures.compare.MOST_CONDITIONS:
             most = figures.compare.MOST_CONDITIONS
             raise UsageError(f"{most} conditions beside the first fit; name fewer with --session")
@@ -68,7 +69,7 @@ def curve(
     is a point, joined with those that differ in nothing else.
     """
     with opened(database) as store:
-        conditions = conditions_named(store, experiment, sessions, 1)
+        conditions = lab.conditions.conditions_named(store, experiment, sessions, 1)
         found = lab.courses.curves_of(store, conditions, y, x)
     figures.curve.require_few(found.lines)
     title = f"{found.y.capitalize()} against {found.x}"

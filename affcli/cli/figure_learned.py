@@ -9,11 +9,10 @@ import typer
 
 from affcli import lab, registry
 from affcli import store as stores
-from affcli.cli.database import learned_runs, opened
+from affcli.cli.database import opened
 from affcli.cli.figure import Figure, figure
 from affcli.cli.options import (
     DEFAULT_BROKEN,
-    DEFAULT_DATABASE,
     DEFAULT_TOOL,
     LARGEST_ID,
     Becomes,
@@ -32,6 +31,7 @@ from affcli.core.identity import canonical_json
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import LIVES
 from affcli.errors import UsageError
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report import figures
 from affcli.report.captions import (
     LEARNING,
@@ -102,7 +102,7 @@ def affordances(
         if after_trial is not None:
             shown = lab.affordance_views.tables_around_trial(store, after_trial)
         else:
-            chosen = _chosen_run(store, run, tool, database)
+            chosen = _chosen_run(store, run, tool)
             if compare is not None:
                 shown = lab.affordance_views.tables_compared(
                     store, chosen, store.learning.run(compare)
@@ -238,9 +238,7 @@ def learning(
             info, kinds = lab.learning_curves.curves_of_robots(store, session, names)
             words = robots_words(info, max(kind.robots for kind in kinds))
             return Figure(words, partial(figures.learning.bands_figure, kinds))
-        curves = lab.learning_curves.curves_of(
-            store, _runs_to_draw(store, run or (), names, database)
-        )
+        curves = lab.learning_curves.curves_of(store, _runs_to_draw(store, run or (), names))
     draw = partial(figures.learning.curves_figure, curves)
     if len(curves) > figures.learning.MOST_CURVES:
         draw = partial(figures.learning.bands_figure, lab.learning_curves.by_kind(curves))
@@ -257,9 +255,7 @@ def _success(experiment: str, tools: Sequence[str], database: Path) -> Figure:
     return Figure(words, partial(figures.curve.curve_figure, found.lines, found.x, found.y))
 
 
-def _chosen_run(
-    store: "stores.Store", run: int | None, tool: str | None, database: Path
-) -> LearningRunInfo:
+def _chosen_run(store: "stores.Store", run: int | None, tool: str | None) -> LearningRunInfo:
     """Return a learning run, finished or not, or the latest finished one of a tool."""
     if run is not None:
         return store.learning.run(run)
@@ -270,11 +266,11 @@ def _chosen_run(
         raise UsageError(
             f"no finished run with the {name}; --run {number} draws what run {number} has so far"
         )
-    return learned_runs(store, name, database)[0]
+    return lab.choosing.learned_runs(store, name)[0]
 
 
 def _runs_to_draw(
-    store: "stores.Store", ids: Sequence[int], tools: Sequence[str], database: Path
+    store: "stores.Store", ids: Sequence[int], tools: Sequence[str]
 ) -> list[LearningRunInfo]:
     """Return learning runs, finished or not: those asked for, or all that stand for themselves."""
     if ids:
@@ -288,5 +284,5 @@ def _runs_to_draw(
             raise UsageError(
                 f"no learning runs but of robots: --session {reproduced[-1].id} draws these"
             )
-        learned_runs(store, tools[0] if tools else None, database)
+        lab.choosing.learned_runs(store, tools[0] if tools else None)
     return runs

@@ -3,18 +3,11 @@
 from functools import partial
 
 from affcli import lab
-from affcli.cli.database import learned_runs, opened, tool_or_default
+from affcli.cli.database import opened, tool_or_default
 from affcli.cli.figure import Figure, figure
-from affcli.cli.options import (
-    DEFAULT_DATABASE,
-    Database,
-    LearnedTool,
-    Pushes,
-    Run,
-    Seed,
-    TrialSensor,
-)
+from affcli.cli.options import Database, LearnedTool, Pushes, Run, Seed, TrialSensor
 from affcli.cli.terminal import followed
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report import figures
 from affcli.report.captions import prediction_words
 
@@ -36,7 +29,7 @@ def prediction(
     The numbers are those of `affcli predict` with as many pushes.
     """
     with opened(database) as store:
-        (used,) = learned_runs(store, tool_or_default(tool, run), database, run)
+        (used,) = lab.choosing.learned_runs(store, tool_or_default(tool, run), run)
         spec = lab.predicting.prediction_spec(used, used.spec.held, seed, sensor, pushes)
         doing = lab.predicting.predict(store, used, spec)
         pushes = min(pushes, used.behaviors) if used.spec.logged else pushes

@@ -8,13 +8,9 @@ import typer
 from affcli import lab
 from affcli.cli.database import opened
 from affcli.cli.figure import Figure, figure
-from affcli.cli.options import (
-    DEFAULT_DATABASE,
-    Database,
-    check_count,
-    checked_range,
-)
+from affcli.cli.options import Database, check_count, checked_range
 from affcli.errors import BadInputError, UsageError
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report import figures
 from affcli.report.captions import Words, adaptation_words, joined, results_words
 from affcli.report.film import MOST_NAMED, shown_of

@@ -6,16 +6,12 @@ from typing import Annotated
 import typer
 
 from affcli import lab
-from affcli.cli.database import opened, with_database
-from affcli.cli.options import (
-    DEFAULT_DATABASE,
-    AsJson,
-    Database,
-    check_if_given,
-    checked_note,
-)
-from affcli.cli.terminal import now, say, show_either
-from affcli.errors import BadInputError, one_line
+from affcli.cli.database import opened
+from affcli.cli.options import AsJson, Database, check_if_given, checked_note
+from affcli.cli.terminal import say, show_either
+from affcli.errors import one_line
+from affcli.lab.clock import now
+from affcli.lab.suggesting import DEFAULT_DATABASE, with_database
 from affcli.logs.reading import Log
 from affcli.report.importing import import_json, import_table, log_words
 from affcli.report.words import many
@@ -90,11 +86,8 @@ def import_log(
 
 def _say_bad(log: Log, *, strict: bool) -> None:
     """Say which lines could not be read; BadInputError when none may be left out."""
-    if strict and log.left_out:
-        raise BadInputError(
-            f"{many(log.left_out, 'line')} cannot be read, and --strict leaves none out; the "
-            f"first: {log.bad[0]}"
-        )
+    if strict:
+        log.require_whole()
     for line in log.bad[:MOST_NAMED]:
         say(f"left out: {one_line(line)}")
     more = log.left_out - MOST_NAMED

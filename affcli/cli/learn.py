@@ -9,7 +9,6 @@ from affcli import lab, registry
 from affcli import store as stores
 from affcli.cli.database import opened
 from affcli.cli.options import (
-    DEFAULT_DATABASE,
     MOST_WORKERS,
     AsJson,
     Binding,
@@ -29,12 +28,14 @@ from affcli.cli.options import (
     checked_minutes,
     checked_note,
 )
-from affcli.cli.terminal import bars, now, say, show_either
+from affcli.cli.terminal import bars, say, show_either
 from affcli.config import load_settings, with_sensor
 from affcli.core.limits import MOST_BEHAVIORS
 from affcli.core.records import AlikeRun, LearningRunInfo
 from affcli.core.specs import LearningSpec
 from affcli.errors import BadInputError, UsageError
+from affcli.lab.clock import now
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report.learning import groups_json, groups_table, run_json, summary
 from affcli.simulation.tools.paper import TOOL_PARTS
 

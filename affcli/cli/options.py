@@ -196,7 +196,6 @@ Database = Annotated[
         callback=waited_for,
     ),
 ]
-DEFAULT_DATABASE = Path("affcli.db")
 
 AsJson = Annotated[bool, typer.Option("--json", help="Results as JSON: command, format, results.")]
 Seed = Annotated[

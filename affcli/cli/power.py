@@ -5,11 +5,12 @@ from typing import Annotated
 import typer
 
 from affcli import lab
-from affcli.cli.compare import Experiment, Sessions, checked_by, conditions_named
+from affcli.cli.compare import Experiment, Sessions, checked_by
 from affcli.cli.database import opened
-from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database
+from affcli.cli.options import AsJson, Database
 from affcli.cli.terminal import show_either
 from affcli.errors import BadInputError, UsageError, one_line
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report.paired import power_json, power_tables
 
 DIFFERENCES = (1.0, 2.0, 4.0)
@@ -84,7 +85,7 @@ def power(
     in affcli/analysis/README.md.
     """
     with opened(database) as store:
-        conditions = conditions_named(store, experiment, sessions, 1)
+        conditions = lab.conditions.conditions_named(store, experiment, sessions, 1)
         if len(conditions) > 2:
             of = f"experiment {one_line(experiment)} has" if experiment is not None else "there are"
             two = " ".join(f"--session {one.session.id}" for one in conditions[:2])

@@ -1,9 +1,8 @@
 """``affcli predict``: the table as a predictive model of pushes it has never seen (§6.1)."""
 
 from affcli import lab
-from affcli.cli.database import learned_runs, opened, tool_or_default
+from affcli.cli.database import opened, tool_or_default
 from affcli.cli.options import (
-    DEFAULT_DATABASE,
     AsJson,
     Database,
     HeldShape,
@@ -14,6 +13,7 @@ from affcli.cli.options import (
     TrialSensor,
 )
 from affcli.cli.terminal import followed, show_either
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.planning.prediction import RADIUS
 from affcli.report.prediction import prediction_json, prediction_tables
 
@@ -36,7 +36,7 @@ def predict(
     Nothing is written.
     """
     with opened(database) as store:
-        (used,) = learned_runs(store, tool_or_default(tool, run), database, run)
+        (used,) = lab.choosing.learned_runs(store, tool_or_default(tool, run), run)
         held = lab.run_parts.tool_of(used.spec, shape or used.spec.tool)
         spec = lab.predicting.prediction_spec(used, held, seed, sensor, pushes)
         doing = lab.predicting.predict(store, used, spec)

@@ -12,15 +12,7 @@ from affcli import lab
 from affcli import store as stores
 from affcli.cli.database import opened
 from affcli.cli.files import require_new, save
-from affcli.cli.options import (
-    DEFAULT_DATABASE,
-    AsJson,
-    Database,
-    Force,
-    Run,
-    check_count,
-    checked_range,
-)
+from affcli.cli.options import AsJson, Database, Force, Run, check_count, checked_range
 from affcli.cli.terminal import (
     asked,
     interactive,
@@ -36,6 +28,7 @@ from affcli.core.replay import Difference, Replay, ReplayedBehavior
 from affcli.errors import AffcliError, BadInputError, UsageError, one_line
 from affcli.lab.drawing import require_figures
 from affcli.lab.filming import FRAME_RATE
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report.replaying import (
     Frame,
     all_words,

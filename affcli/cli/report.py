@@ -9,17 +9,11 @@ import typer
 from affcli import lab
 from affcli.cli.database import opened
 from affcli.cli.files import require_new, save
-from affcli.cli.options import (
-    DEFAULT_DATABASE,
-    LARGEST_ID,
-    AsJson,
-    Database,
-    Force,
-    check_count,
-)
+from affcli.cli.options import LARGEST_ID, AsJson, Database, Force, check_count
 from affcli.cli.terminal import progress, say, show_either
 from affcli.core.limits import MOST_ROBOTS
 from affcli.errors import BadInputError, UsageError, one_line
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report import page
 from affcli.report.overview import overview_json, overview_tables
 

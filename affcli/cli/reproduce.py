@@ -7,7 +7,6 @@ import typer
 from affcli import lab
 from affcli.cli.database import opened, say_failed
 from affcli.cli.options import (
-    DEFAULT_DATABASE,
     DEFAULT_PLANNER,
     AsJson,
     Binding,
@@ -26,10 +25,12 @@ from affcli.cli.options import (
     check_count,
     checked_pool,
 )
-from affcli.cli.terminal import now, progress, say, show_either
+from affcli.cli.terminal import progress, say, show_either
 from affcli.config import load_settings, with_sensor
 from affcli.core.limits import MOST_ROBOTS
 from affcli.errors import UsageError
+from affcli.lab.clock import now
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report.reproduction import reproduction_json, reproduction_tables
 
 FEW_ROBOTS = 20

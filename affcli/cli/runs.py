@@ -6,12 +6,13 @@ import typer
 
 from affcli import lab, registry
 from affcli.cli.database import opened
-from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database, check_count, checked_note
+from affcli.cli.options import AsJson, Database, check_count, checked_note
 from affcli.cli.table_choice import Tool
 from affcli.cli.terminal import asked, interactive, say, show_either
 from affcli.core.names import one_of
 from affcli.core.specs import EXPERIMENT, REPRODUCE, Keep
 from affcli.errors import UsageError, one_line
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report.learning import summary
 from affcli.report.runs import (
     belongings_words,

@@ -4,10 +4,9 @@ from typing import Annotated
 
 import typer
 
-from affcli import lab, registry
-from affcli.cli.database import learned_runs, opened, say_trials
+from affcli import lab
+from affcli.cli.database import opened, say_trials
 from affcli.cli.options import (
-    DEFAULT_DATABASE,
     DEFAULT_PLANNER,
     DEFAULT_TASKS,
     AsJson,
@@ -19,9 +18,10 @@ from affcli.cli.options import (
     TrialSensor,
     check_count,
 )
-from affcli.cli.terminal import now, show, show_either
+from affcli.cli.terminal import show, show_either
 from affcli.core.task import ALL_STARTS
-from affcli.errors import UsageError
+from affcli.lab.clock import now
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report.trials import (
     explain_trial,
     solve_table,
@@ -68,10 +68,10 @@ def solve(
     Every step updates the counters of the row it used in the stored table. Exit code 1 only when a
     single start was asked for and not solved.
     """
-    wanted = lab.solving.WantedTasks(_tasks(task, goal, count), goal, start)
+    wanted = lab.solving.WantedTasks(lab.solving.tasks_named(task, goal, count), goal, start)
     trials: list[lab.solving.SolvedTrial] = []
     with opened(database, write=True) as store:
-        runs = learned_runs(store, tool, database, run, usable=True)
+        runs = lab.choosing.learned_runs(store, tool, run, usable=True)
         for one in lab.solving.solve(store, runs, wanted, seed, now, planner, sensor):
             trials.append(one)
             if explain and not as_json:
@@ -94,17 +94,3 @@ def solve(
     numbers = [one.id for one in trials]
     say_trials(numbers, numbers[-1], database)
     return 0 if start == ALL_STARTS or all(one.solved for one in trials) else 1
-
-
-def _tasks(task: str, goal: str | None, count: int | None) -> str:
-    """Return which set of tasks is meant.
-
-    Raises:
-        UsageError: of the paper's tasks no goal is named: all of them are of `affcli reproduce`.
-        BadInputError: the set has another number of tasks than one may ask for.
-    """
-    chosen = registry.component("tasks", task)
-    if goal is None and chosen.name == DEFAULT_TASKS:
-        raise UsageError("Missing option '--goal'; or give --task anywhere")
-    given = dict(chosen.params) | ({} if count is None else {"n": count})
-    return str(registry.part("tasks", chosen.name).component(given))

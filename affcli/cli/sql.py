@@ -1,14 +1,13 @@
 """``affcli sql``: ask the database in plain SQL, read-only for certain."""
 
-from collections.abc import Sequence
-from itertools import chain, count
 from typing import Annotated, Any
 
 import typer
 
-from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database
+from affcli.cli.options import AsJson, Database
 from affcli.cli.terminal import say, show_json, show_rows, show_text
 from affcli.errors import UsageError, one_line
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report.csv_table import csv_text
 from affcli.store import run_sql
 
@@ -34,14 +33,14 @@ def sql(
     result = run_sql(database, query)
     columns, rows, cut = result.columns, result.rows, result.truncated
     if as_json:
-        keys = _distinct(columns)
+        keys = result.names
         show_json([dict(zip(keys, map(_plain, row), strict=True)) for row in rows])
     elif as_csv:
-        show_text(csv_text(_distinct(columns), rows))
+        show_text(csv_text(result.names, rows))
     else:
         drawn = max(1, MOST_CELLS // len(columns))
         rows, cut = rows[:drawn], cut or len(rows) > drawn
-        names = tuple(map(one_line, _distinct(columns)))
+        names = tuple(map(one_line, result.names))
         numbers = {
             name
             for name, values in zip(names, zip(*rows, strict=True), strict=False)
@@ -58,15 +57,6 @@ def sql(
     if cut:
         more = ", or give --json or --csv" if len(rows) < len(result.rows) else ""
         say(f"only the first {len(rows)} rows are shown; add a limit or a where{more}")
-
-
-def _distinct(columns: Sequence[str]) -> list[str]:
-    """Return the names of columns, a repeated one with its number: a, a 2, a 3."""
-    names: list[str] = []
-    for column in columns:
-        numbered = (f"{column} {number}" for number in count(2))
-        names.append(next(name for name in chain([column], numbered) if name not in names))
-    return names
 
 
 def _plain(value: Any) -> Any:

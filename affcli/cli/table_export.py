@@ -10,7 +10,7 @@ import typer
 from affcli import lab, report
 from affcli.cli.database import opened
 from affcli.cli.files import require_new, save
-from affcli.cli.options import DEFAULT_DATABASE, Database, Force
+from affcli.cli.options import Database, Force
 from affcli.cli.table_choice import (
     AllRuns,
     Behavior,
@@ -19,12 +19,12 @@ from affcli.cli.table_choice import (
     Region,
     Run,
     Tool,
-    chosen_rows,
 )
 from affcli.cli.terminal import say, show_text
 from affcli.core.names import one_of
 from affcli.core.row_filter import Column, Relation
 from affcli.errors import BadInputError, UsageError, one_line
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report.csv_table import csv_lines
 from affcli.report.json_table import json_lines
 
@@ -71,9 +71,8 @@ def export(
     write = _checked_format(kind, out)
 
     with opened(database) as store:
-        runs, wanted = chosen_rows(
+        runs, wanted = lab.choosing.chosen_rows(
             store,
-            database,
             tool=tool,
             run=run,
             all_runs=all_runs,

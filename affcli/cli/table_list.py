@@ -2,7 +2,7 @@
 
 from affcli import lab
 from affcli.cli.database import opened
-from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database
+from affcli.cli.options import AsJson, Database
 from affcli.cli.table_choice import (
     AllRuns,
     Behavior,
@@ -11,10 +11,10 @@ from affcli.cli.table_choice import (
     Region,
     Run,
     Tool,
-    chosen_rows,
 )
 from affcli.cli.terminal import say, show, show_json
 from affcli.errors import one_line
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report.rows import rows_json, rows_table
 
 
@@ -36,9 +36,8 @@ def list_rows(
     otherwise.
     """
     with opened(database) as store:
-        runs, wanted = chosen_rows(
+        runs, wanted = lab.choosing.chosen_rows(
             store,
-            database,
             tool=tool,
             run=run,
             all_runs=all_runs,

@@ -7,8 +7,9 @@ import typer
 from affcli import lab
 from affcli.analysis.regions import region_of
 from affcli.cli.database import opened
-from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database, check_count
+from affcli.cli.options import AsJson, Database, check_count
 from affcli.cli.terminal import show_either
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report.rows import row_json, row_tables
 
 

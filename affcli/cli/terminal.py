@@ -7,7 +7,6 @@ import sys
 import time
 from collections import deque
 from contextlib import contextmanager, suppress
-from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 from textwrap import fill
@@ -48,11 +47,6 @@ def prepare_streams() -> None:
             stream.reconfigure(errors="backslashreplace")
     if isinstance(sys.stdin, io.TextIOWrapper):
         sys.stdin.reconfigure(errors="backslashreplace")
-
-
-def now() -> str:
-    """Return the time as ISO text, for the record; no result depends on it."""
-    return datetime.now(UTC).isoformat(timespec="seconds")
 
 
 def say(message: str) -> None:

@@ -6,9 +6,8 @@ import typer
 
 from affcli import lab
 from affcli.analysis.verification import Verification
-from affcli.cli.database import learned_runs, opened, tool_or_default
+from affcli.cli.database import opened, tool_or_default
 from affcli.cli.options import (
-    DEFAULT_DATABASE,
     MOST_TRIES,
     AsJson,
     Database,
@@ -19,7 +18,9 @@ from affcli.cli.options import (
     TrialSensor,
     check_count,
 )
-from affcli.cli.terminal import followed, now, show_either
+from affcli.cli.terminal import followed, show_either
+from affcli.lab.clock import now
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report.verification import verification_json, verification_tables
 
 
@@ -54,7 +55,7 @@ def verify(
     that matches its start. Nothing is written unless told to --update.
     """
     with opened(database, write=update) as store:
-        (used,) = learned_runs(store, tool_or_default(tool, run), database, run, usable=True)
+        (used,) = lab.choosing.learned_runs(store, tool_or_default(tool, run), run, usable=True)
         held = lab.run_parts.tool_of(used.spec, shape or used.spec.tool)
         spec = lab.verifying.verification_spec(
             used, held, seed, sensor, rows, until_verdict=until_verdict

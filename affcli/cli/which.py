@@ -7,12 +7,13 @@ import typer
 
 from affcli import lab
 from affcli.cli.database import opened
-from affcli.cli.options import DEFAULT_DATABASE, AsJson, Database, checked_length
-from affcli.cli.table_choice import AllRuns, Behavior, Run, Tool, chosen_rows
+from affcli.cli.options import AsJson, Database, checked_length
+from affcli.cli.table_choice import AllRuns, Behavior, Run, Tool
 from affcli.cli.terminal import say, show_either
 from affcli.core.effects import Way
 from affcli.core.names import one_of
 from affcli.errors import BadInputError, one_line
+from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.logs.mapping import LENGTHS
 from affcli.report.effects import best_words, effects_json, effects_table
 
@@ -63,9 +64,8 @@ def which(
     """
     where = Way(way)
     with opened(database) as store:
-        runs, wanted = chosen_rows(
+        runs, wanted = lab.choosing.chosen_rows(
             store,
-            database,
             tool=tool,
             run=run,
             all_runs=all_runs,

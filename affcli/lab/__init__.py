@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from affcli.lab import affordance_views as affordance_views
     from affcli.lab import breaking as breaking
     from affcli.lab import checking as checking
+    from affcli.lab import choosing as choosing
     from affcli.lab import cluster as cluster
     from affcli.lab import conditions as conditions
     from affcli.lab import conducting as conducting

@@ -9,7 +9,7 @@ from affcli.core.names import one_of
 from affcli.core.records import SessionInfo
 from affcli.core.results import ConditionCounts
 from affcli.core.specs import LIVES
-from affcli.errors import UsageError
+from affcli.errors import UsageError, one_line
 from affcli.lab.sessions import finished_session
 from affcli.store import Store
 
@@ -78,6 +78,32 @@ def experiment_named(store: Store, name: str) -> list[Condition]:
     if found.status != "done":
         raise UsageError(f"experiment {name!r} is not finished; go on: affcli experiment --resume")
     return [condition_of(store, one, sessions[number]) for one, number in found.conditions]
+
+
+def conditions_named(
+    store: Store, experiment: str | None, sessions: Sequence[int] | None, fewest: int
+) -> list[Condition]:
+    """Return the conditions that a command is about; UsageError when they are fewer than that."""
+    if experiment is not None and sessions:
+        raise UsageError(f"name an experiment or --session, not both; drop {one_line(experiment)}")
+    if experiment is not None:
+        found = experiment_named(store, experiment)
+    else:
+        found = sessions_named(store, sessions or [])
+    if len(found) >= fewest:
+        return found
+    if experiment is not None:
+        raise UsageError(
+            f"experiment {one_line(experiment)} has one condition; compare its session "
+            f"({found[0].session.id}) with another: --session"
+        )
+    named = ", ".join(one_line(one.name) for one in store.experiments.all())
+    there = ", ".join(str(s.id) for s in store.sessions.all(*LIVES) if s.status == "done")
+    wanted = " ".join(f"--session {number}" for number in range(1, fewest + 1))
+    raise UsageError(
+        f"name an experiment (there: {named or 'none yet'}), or sessions, as in {wanted} "
+        f"(finished: {there or 'none yet'})"
+    )
 
 
 def compared(

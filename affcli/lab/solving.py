@@ -12,6 +12,7 @@ from affcli.core.specs import Counters, Protocol, SessionSpec, TrialSpec
 from affcli.core.task import ALL_STARTS, Task
 from affcli.core.trial import Outcome, StepRecord, TrialEnd
 from affcli.core.world import World
+from affcli.errors import UsageError
 from affcli.lab.believing import require_own
 from affcli.lab.run_parts import tasks_of, world_of
 from affcli.lab.trials import trial_specs, whole_trial
@@ -135,6 +136,20 @@ def solve(
             steps = tuple((ids[step.record.row.step], step.record) for step in record.steps)
             yield SolvedTrial(number, trial, record.end, steps)
     store.sessions.finish(session, now())
+
+
+def tasks_named(task: str, goal: str | None, count: int | None = None) -> str:
+    """Return which set of tasks is meant.
+
+    Raises:
+        UsageError: of the paper's tasks no goal is named: all of them are of `affcli reproduce`.
+        BadInputError: the set has another number of tasks than one may ask for.
+    """
+    chosen = registry.component("tasks", task)
+    if goal is None and chosen.name == registry.DEFAULTS["task"]:
+        raise UsageError("Missing option '--goal'; or give --task anywhere")
+    given = dict(chosen.params) | ({} if count is None else {"n": count})
+    return str(registry.part("tasks", chosen.name).component(given))
 
 
 def session_spec(kind: str, run: LearningRunInfo, trial: TrialSpec) -> SessionSpec:

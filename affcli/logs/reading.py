@@ -92,6 +92,16 @@ class Log:
     bad: list[BadLine] = field(default_factory=list)
     left_out: int = 0
 
+    def require_whole(self) -> None:
+        """Make sure that all lines could be read; BadInputError names the first that could not."""
+        if self.left_out:
+            raise BadInputError(f"a line of the log cannot be read: {self.left_out_words()}")
+
+    def left_out_words(self) -> str:
+        """Return how many lines could not be read, and the first of them."""
+        many = "1 line" if self.left_out == 1 else f"{self.left_out} lines"
+        return f"{many}; the first: {self.bad[0]}"
+
     def leave_out(self, file: str, line: int, why: str) -> None:
         """Take note of a line that could not be read."""
         self.left_out += 1

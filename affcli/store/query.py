@@ -3,6 +3,7 @@
 import sqlite3
 import time
 from dataclasses import dataclass
+from itertools import chain, count
 from pathlib import Path
 from typing import NoReturn
 
@@ -70,6 +71,15 @@ class QueryResult:
     columns: tuple[str, ...]
     rows: tuple[tuple[Cell, ...], ...]
     truncated: bool
+
+    @property
+    def names(self) -> list[str]:
+        """The names of the columns, a repeated one with its number: a, a 2, a 3."""
+        names: list[str] = []
+        for column in self.columns:
+            numbered = (f"{column} {number}" for number in count(2))
+            names.append(next(name for name in chain([column], numbered) if name not in names))
+        return names
 
 
 def run_sql(
