@@ -1,5 +1,6 @@
 """The stored table as a predictive model, on pushes it has never seen (§6.1)."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import islice
@@ -93,7 +94,8 @@ def logged_pushes(store: Store, run: LearningRunInfo, spec: VerificationSpec) ->
         require_robot(run.spec)
     rows = _live(store, run)
     tries = store.learning.tries(run.id)
-    if not all(map(Affordance.is_placed, rows)):
+    offsets = [one.offset for one in tries]
+    if not all(map(Affordance.is_placed, rows)) or any(math.isnan(at.x + at.y) for at in offsets):
         rows = [replace(row, start=_at_its_place(row.start)) for row in rows]
         tries = tuple(one._replace(offset=one.at) for one in tries)
     staged = StagedTable(rows)

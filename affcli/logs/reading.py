@@ -168,11 +168,10 @@ class _File:
             where = self._columns([name.strip() for name in self._split(first[1])])
         else:
             where, lines = self._columns(None), self._content()
-        # What has too few columns for the map tells nothing of how many a line should have.
         least = max(where.values(), default=-1) + 1
         sizes = Counter(len(self._split(text)) for _, text in self._counted(lines))
         enough = {size: count for size, count in sizes.items() if size >= least}
-        usual = max(enough, key=enough.__getitem__, default=least)
+        usual = max(enough, key=enough.__getitem__, default=0)
         lines = self._content()
         if self._how.header:
             next(lines)
@@ -227,6 +226,9 @@ class _File:
         if len(text) > LONGEST_LINE:
             raise _BadError(f"more than {LONGEST_LINE} letters")
         cells = self._split(text)
+        least = max(where.values(), default=-1) + 1
+        if len(cells) < least:
+            raise _BadError(f"{len(cells)} columns, the map names {least}")
         if len(cells) != usual:
             raise _BadError(f"{len(cells)} columns, the others have {usual}")
         if len(self._log.trials) >= MOST_TRIALS:

@@ -140,3 +140,14 @@ def test_positions_found_can_index_the_columns() -> None:
     assert found.dtype == np.intp
     assert table.times_used[found].tolist() == [1, 1]
     assert found.tolist() == [0, 2]
+
+
+def test_a_colour_that_is_not_known_contradicts_none() -> None:
+    """And rows of a log, which has none, found one class, however many they are."""
+    unknown = Color((np.nan,) * 3)
+    table = table_of(
+        affordance(1, object_color=unknown, tool_color=unknown),
+        affordance(2, tool_color=Color((0.0, 0.0, 0.0))),
+        affordance(3, object_color=unknown, tool_color=unknown),
+    )
+    assert table.with_colors_of(observation()).tolist() == [0, 1, 2]

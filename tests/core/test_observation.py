@@ -77,3 +77,9 @@ def test_opposite_movements_are_half_a_turn_apart(m: Movement) -> None:
     back = Movement(-m.dx, -m.dy, -m.dz)
     assert angle_between_degrees(m, back) == pytest.approx(180.0)
     assert angle_between_degrees(m, m) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_log_without_heights_tells_of_movements_on_the_table() -> None:
+    start = observation(Point(1.0, 20.0))._replace(object_z=math.nan)
+    end = observation(Point(4.0, 16.0))
+    assert movement(start, end) == movement(start, end._replace(object_z=math.nan)) == (3, -4, 0)

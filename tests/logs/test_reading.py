@@ -83,6 +83,7 @@ def test_the_offset_follows_from_the_wrist(tmp_path: Path) -> None:
     ("line", "why"),
     [
         ("rake cup 3 0 0 1 2 0 0 3", "10 columns, the others have 11"),
+        ("rake cup 3 0 0 1 2 0", "8 columns, the map names 9"),
         ("rake cup 9 0 0 1 2 0 0 3 4", "behavior 9: [names.behavior] has no such name"),
         ("rake cup 3 x 0 1 2 0 0 3 4", "start_x = x: no number within 10000"),
         ("rake cup 3 1_0 0 1 2 0 0 3 4", "start_x = 1_0: no number"),

@@ -40,6 +40,17 @@ def tables(draw: st.DrawFn) -> list[Affordance]:
     ]
 
 
+@given(tables(), st.sampled_from(CALLS), offsets, st.integers(1, 20))
+def test_a_row_that_is_left_out_is_as_if_it_were_not_there(
+    rows: list[Affordance], call: BehaviorCall, offset: Point, without: int
+) -> None:
+    """So each trial of a log is predicted by the others."""
+    others = TablePredictor([row for row in rows if row.step != without])
+    table = TablePredictor(rows)
+    assert table.predict(call, offset, without) == others.predict(call, offset)
+    assert table.mean_movement(call, without) == others.mean_movement(call)
+
+
 def naive(rows: list[Affordance], call: BehaviorCall, offset: Point, radius: float) -> Movement:
     """Return the movement of the nearest row, looking at one after the other, older ones first."""
     best, nearest = NO_MOVEMENT, math.inf
