@@ -1,4 +1,4 @@
-"""The numbers are those of the first public version to the bit (see `tests.golden`)."""
+"""The numbers are those of version 2 of the physics to the bit (see `tests.golden`)."""
 
 from collections.abc import Iterator, Sequence
 

@@ -283,6 +283,8 @@ def _parts(key: str, value: object) -> str | list[str]:
 def _condition(name: str, said: Said) -> tuple[Condition, dict[str, Any]]:
     """Return a condition of all that is said of it, and its stored form."""
     own = {**USUAL, **{key: value for key, value in said.items() if "." not in key}}
+    # By its version, as one that is said: read again, the stored form is to be the same.
+    own["world"] = str(registry.component("worlds", own["world"]))
     settings = settings_by_name({k: v for k, v in said.items() if "." in k}, "settings")
     parts = RunParts.chosen(
         settings,

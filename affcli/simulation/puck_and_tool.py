@@ -31,7 +31,6 @@ class PuckAndTool:
         puck: the puck.
         friction: all coefficients.
         settings: how finely to solve.
-        straight: as for `surface_friction`.
 
     Attributes:
         step: advances everything by a time (s).
@@ -49,8 +48,6 @@ class PuckAndTool:
         puck: PuckGeometry,
         friction: SurfaceFriction,
         settings: PhysicsSettings,
-        *,
-        straight: bool,
     ) -> None:
         space = pymunk.Space()
         space.iterations = settings.iterations
@@ -69,22 +66,24 @@ class PuckAndTool:
         rim = pymunk.Circle(body, puck.radius)
         rim.friction = 1.0
         tool = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
-        table = pymunk.Body(body_type=pymunk.Body.STATIC)
-        space.add(body, rim, tool, table)
+        space.add(body, rim, tool)
         for outline in outlines:
             part = pymunk.Poly(tool, list(outline.vertices))
             # The engine multiplies the two coefficients of a contact.
             part.friction = friction.tool_puck
             space.add(part)
-        joints = surface_friction(table, body, puck, friction, straight=straight)
-        space.add(*joints)
-        self._owned = (space, body, rim, tool, table, joints)  # the engine does not keep them alive
+        brakes = surface_friction(body, puck, friction)
+        space.add(*brakes.joints)
+        self._owned = (space, body, rim, tool, brakes)  # the engine does not keep them alive
         # A space that is freed goes over what is in it, and the program is aborted when garbage is
         # collected meanwhile that a body is in: so nothing is left in it.
         weakref.finalize(self, _empty, space).atexit = False
         self._space, self._puck, self._tool = space._space, body._body, tool._body  # noqa: SLF001
-        self._joints = [(joint._constraint, joint.max_force) for joint in joints]  # noqa: SLF001
+        self._counterpart = brakes.counterpart._body  # noqa: SLF001
+        self._joints = [(joint._constraint, joint.max_force) for joint in brakes.joints]  # noqa: SLF001
+        self._mass, self._moment = body.mass, body.moment
         self.step = partial(chipmunk.cpSpaceStep, self._space)
+        self._sweeps = settings.iterations
         self.move_tool = partial(chipmunk.cpBodySetVelocity, self._tool)
         self.turn_tool = partial(chipmunk.cpBodySetAngularVelocity, self._tool)
 
@@ -99,6 +98,7 @@ class PuckAndTool:
         # The engine starts each step from the impulses of the step before, also when that step was
         # the last of another push. A step with the puck far away ends every contact, and one in
         # which the joints may not exceed zero is the only way to make them forget.
+        self.other_steps(STEP)
         self._place(Pose(*FAR_AWAY), wrist, turned)
         for joint, _ in self._joints:
             chipmunk.cpConstraintSetMaxForce(joint, 0.0)
@@ -106,6 +106,8 @@ class PuckAndTool:
         for joint, share in self._joints:
             chipmunk.cpConstraintSetMaxForce(joint, share)
         self._place(puck, wrist, turned)
+        self.align_brakes()
+        chipmunk.cpBodySetVelocity(self._counterpart, AT_REST)
 
     def _place(self, puck: Pose, wrist: Point, turned: float) -> None:
         """Put puck and tool somewhere, at rest."""
@@ -121,15 +123,24 @@ class PuckAndTool:
         chipmunk.cpSpaceReindexShapesForBody(self._space, self._puck)
         chipmunk.cpSpaceReindexShapesForBody(self._space, self._tool)
 
+    def other_steps(self, seconds: float) -> None:
+        """Prepare for steps of another length.
+
+        The engine begins each step from the impulses of the one before. It scales them by the
+        lengths of the two, but what it adds to them it limits as if it had not: so it is told that
+        the step before was as long. In a long step friction can do more, and it takes the solver
+        more sweeps to find what it does.
+
+        Args:
+            seconds: how long (s).
+        """
+        chipmunk.cpSpaceSetCurrentTimeStep(self._space, seconds)
+        chipmunk.cpSpaceSetIterations(self._space, self._sweeps + int(seconds / STEP) // 2)
+
     def puck_pose(self) -> Pose:
         """Return the puck's pose now (in, rad, table frame)."""
         at = chipmunk.cpBodyGetPosition(self._puck)
         return Pose(at.x, at.y, chipmunk.cpBodyGetAngle(self._puck))
-
-    def puck_speed(self) -> float:
-        """Return how fast the puck's centre moves now (in/s)."""
-        velocity = chipmunk.cpBodyGetVelocity(self._puck)
-        return math.hypot(velocity.x, velocity.y)
 
     def puck_from_tool(self) -> tuple[float, float]:
         """Return where the puck's centre is now, seen from the tool's grasp point (in)."""
@@ -141,6 +152,35 @@ class PuckAndTool:
         """Return the same in axes that turn with the tool (in)."""
         at = chipmunk.cpBodyWorldToLocal(self._tool, chipmunk.cpBodyGetPosition(self._puck))
         return at.x, at.y
+
+    def velocity(self) -> tuple[float, float, float]:
+        """Return how fast the puck's centre of mass moves and the puck turns now (in/s, rad/s)."""
+        moves = chipmunk.cpBodyGetVelocity(self._puck)
+        return moves.x, moves.y, chipmunk.cpBodyGetAngularVelocity(self._puck)
+
+    def set_velocity(self, x: float, y: float, turning: float) -> None:
+        """Give the puck another velocity (in/s, rad/s)."""
+        chipmunk.cpBodySetVelocity(self._puck, (x, y))
+        chipmunk.cpBodySetAngularVelocity(self._puck, turning)
+
+    def accelerate(self, x: float, y: float, turning: float) -> None:
+        """Let a force and a torque act in the next step that would accelerate the puck so much if
+        nothing else did (in/s^2, rad/s^2).
+        """
+        chipmunk.cpBodySetForce(self._puck, (self._mass * x, self._mass * y))
+        chipmunk.cpBodySetTorque(self._puck, self._moment * turning)
+
+    def shift(self, x: float, y: float, turn: float) -> None:
+        """Move the puck a little (in), and turn it about its centre of mass (rad)."""
+        puck = self._puck
+        chipmunk.cpBodySetAngle(puck, chipmunk.cpBodyGetAngle(puck) + turn)
+        at = chipmunk.cpBodyGetPosition(puck)
+        chipmunk.cpBodySetPosition(puck, (at.x + x, at.y + y))
+
+    def align_brakes(self) -> None:
+        """Turn what makes the brakes act straight as the puck is turned now."""
+        chipmunk.cpBodySetAngle(self._counterpart, chipmunk.cpBodyGetAngle(self._puck))
+        chipmunk.cpBodySetAngularVelocity(self._counterpart, 0.0)
 
 
 def _empty(space: pymunk.Space) -> None:

@@ -1,28 +1,92 @@
 """The physics of one push: a tool slides or turns on the table against the puck (pymunk)."""
 
 import math
-from collections.abc import Callable, Sequence
-from functools import cached_property, partial
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
 
 from affcli.core.geometry import ConvexPolygon, Point, Pose
 from affcli.core.workspace import PuckGeometry, SurfaceFriction
 from affcli.errors import SimulationDivergedError
 from affcli.simulation.contact import arc_to_contact, travel_to_contact
-from affcli.simulation.pace import Pace
 from affcli.simulation.physics_settings import PhysicsSettings
 from affcli.simulation.puck_and_tool import PuckAndTool
+from affcli.simulation.strides import Course, Moment, Strides, Surroundings
 from affcli.simulation.wrist_motion import STEP, Stretch, distance_of, skip, tip_of
 
 REST_SPEED = 1e-6
 """The puck rests when it moves slower than this (in/s) and the tool has stopped."""
-SETTLE_STEPS = 512
+REST_SECONDS = 1.0
 """Friction stops a puck pushed at 5 in/s within 0.04 s; after a second something is wrong."""
 CONTACT_MARGIN = 0.02
 """Start this far before contact (in): two steps at full speed."""
 
-Moment = Callable[[float, float, Pose], None]
-"""Called after each physics step: seconds since the push began, the tool's travel or arc (in), the
-puck's pose."""
+
+class _Way(Protocol):
+    """How the tool goes, told by how far it has gone (in)."""
+
+    def lay_out(self, bodies: PuckAndTool, puck: Pose, gone: float) -> None:
+        """Put puck and tool where they are, at rest."""
+
+    def to_contact(self, puck: Pose, gone: float, length: float) -> float | None:
+        """Return how far the tool surely goes from there before it touches the puck (in)."""
+
+    def course(self, bodies: PuckAndTool) -> Course:
+        """Return how it is done."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Slide:
+    """A slide of the tool from a wrist position along a direction."""
+
+    outlines: tuple[ConvexPolygon, ...]
+    radius: float
+    wrist: Point
+    direction: Point
+
+    def lay_out(self, bodies: PuckAndTool, puck: Pose, gone: float) -> None:
+        x, y = self.direction
+        bodies.lay_out(puck, Point(self.wrist.x + gone * x, self.wrist.y + gone * y))
+
+    def to_contact(self, puck: Pose, gone: float, length: float) -> float | None:
+        x, y = self.direction
+        center = Point(puck.x - self.wrist.x - gone * x, puck.y - self.wrist.y - gone * y)
+        return travel_to_contact(self.outlines, self.direction, length, center, self.radius)
+
+    def course(self, bodies: PuckAndTool) -> Course:
+        x, y = self.direction
+
+        def move(speed: float) -> None:
+            bodies.move_tool((speed * x, speed * y))
+
+        return Course(bodies, move, bodies.puck_from_tool, 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class _Turn:
+    """A turn of the tool about a wrist position, told as an arc at a lever."""
+
+    outlines: tuple[ConvexPolygon, ...]
+    radius: float
+    wrist: Point
+    lever: float
+
+    def lay_out(self, bodies: PuckAndTool, puck: Pose, gone: float) -> None:
+        bodies.lay_out(puck, self.wrist, gone / self.lever)
+
+    def to_contact(self, puck: Pose, gone: float, length: float) -> float | None:
+        x, y = puck.x - self.wrist.x, puck.y - self.wrist.y
+        if gone:
+            cos, sin = math.cos(gone / self.lever), math.sin(gone / self.lever)
+            x, y = cos * x + sin * y, cos * y - sin * x
+        return arc_to_contact(self.outlines, self.lever, length, Point(x, y), self.radius)
+
+    def course(self, bodies: PuckAndTool) -> Course:
+        def turn(speed: float) -> None:
+            bodies.turn_tool(speed / self.lever)
+
+        fastest = tip_of(self.outlines) / abs(self.lever)
+        return Course(bodies, turn, bodies.puck_from_turned_tool, fastest)
 
 
 class PushSimulator:
@@ -46,18 +110,9 @@ class PushSimulator:
         settings: PhysicsSettings,
     ) -> None:
         self._outlines = tuple(outlines)
-        self._radius = puck.radius
-        self._tip = tip_of(self._outlines)
-        self._bodies = partial(PuckAndTool, self._outlines, puck, friction, settings)
-        # Straight pushes of an even puck, which all stored runs are made of, keep the friction that
-        # they had: so these runs can be done again to the bit.
-        self._straight = puck.mass_offset > 0.0
-        self._sliding = self._bodies(straight=self._straight)
-
-    @cached_property
-    def _turning(self) -> PuckAndTool:
-        """The bodies of turns, made when they are first needed."""
-        return self._sliding if self._straight else self._bodies(straight=True)
+        self._puck, self._friction = puck, friction
+        self._around = Surroundings(self._outlines, puck.radius)
+        self._bodies = PuckAndTool(self._outlines, puck, friction, settings)
 
     def push(
         self,
@@ -68,6 +123,7 @@ class PushSimulator:
         watch: Moment | None = None,
         *,
         whole: bool = False,
+        finer: int = 0,
     ) -> Pose:
         """Return where the puck comes to rest.
 
@@ -76,29 +132,17 @@ class PushSimulator:
             wrist: where the tool's grasp point is (in, table frame, on the wrist's grid).
             direction: unit vector along which the tool moves.
             motion: the stretches of the motion, along `direction`.
-            watch: called after each physics step; makes the push run whole.
-            whole: simulate the motion from its first step. Without it the steps before contact are
-                skipped, and a push that never touches is not simulated; the result is the same.
+            watch: called after each short step; makes the push run whole.
+            whole: simulate the motion from its first step. Without it the steps in which nothing
+                touches are skipped, and a push that never touches is not simulated; the result is
+                the same.
+            finer: take no strides, but so many equal steps in each short one.
 
         Raises:
             SimulationDivergedError: the engine gave a number that is not finite.
         """
-        gone = 0.0
-        if not whole and watch is None:
-            center = Point(puck.x - wrist.x, puck.y - wrist.y)
-            length = distance_of(motion)
-            travel = travel_to_contact(self._outlines, direction, length, center, self._radius)
-            if travel is None:
-                return puck
-            gone, motion = skip(motion, max(0.0, travel - CONTACT_MARGIN))
-        table = self._sliding
-        table.lay_out(puck, Point(wrist.x + gone * direction.x, wrist.y + gone * direction.y))
-
-        def move(speed: float) -> None:
-            table.move_tool((speed * direction.x, speed * direction.y))
-
-        self._simulate(table, move, 1.0, table.puck_from_tool, motion, gone, watch)
-        return _rest(table, puck, wrist)
+        way = _Slide(self._outlines, self._puck.radius, wrist, direction)
+        return self._run(way, puck, motion, watch, whole=whole, finer=finer)
 
     def turn(
         self,
@@ -109,11 +153,12 @@ class PushSimulator:
         watch: Moment | None = None,
         *,
         whole: bool = False,
+        finer: int = 0,
     ) -> Pose:
         """Return where the puck comes to rest when the tool turns about the wrist.
 
         Args:
-            puck, wrist, watch, whole: as for `push`.
+            puck, wrist, watch, whole, finer: as for `push`.
             lever: at which the arc of the motion is told: a power of two, or its negative to turn
                 clockwise (in).
             motion: the stretches of the arc.
@@ -121,81 +166,71 @@ class PushSimulator:
         Raises:
             SimulationDivergedError: the engine gave a number that is not finite.
         """
-        gone = 0.0
-        if not whole and watch is None:
-            center = Point(puck.x - wrist.x, puck.y - wrist.y)
-            length = distance_of(motion)
-            arc = arc_to_contact(self._outlines, lever, length, center, self._radius)
-            if arc is None:
-                return puck
-            gone, motion = skip(motion, max(0.0, arc - CONTACT_MARGIN))
-        table = self._turning
-        table.lay_out(puck, wrist, gone / lever)
+        way = _Turn(self._outlines, self._puck.radius, wrist, lever)
+        return self._run(way, puck, motion, watch, whole=whole, finer=finer)
 
-        def turn(speed: float) -> None:
-            table.turn_tool(speed / lever)
-
-        fastest, seen = self._tip / abs(lever), table.puck_from_turned_tool
-        self._simulate(table, turn, fastest, seen, motion, gone, watch)
-        return _rest(table, puck, wrist)
-
-    def _simulate(
+    def _run(
         self,
-        table: PuckAndTool,
-        move: Callable[[float], None],
-        fastest: float,
-        seen: Callable[[], tuple[float, float]],
+        way: _Way,
+        puck: Pose,
         motion: tuple[Stretch, ...],
-        gone: float,
         watch: Moment | None,
-    ) -> None:
-        """Run a motion from where everything was laid out until the puck rests.
-
-        Args:
-            table: the bodies.
-            move: gives the tool a speed (in/s).
-            fastest: no point of the tool moves faster than this many times that speed.
-            seen: gives where the puck is in the tool's own frame (in).
-            motion: the stretches that are left.
-            gone: how far the tool is already (in).
-            watch: called after each physics step.
-        """
-        elapsed = 0.0
-        pace = Pace(self._outlines, self._radius)
-        for speed, steps in motion:
-            move(speed)
-            left = steps
-            while left > 0:
-                stride, count = 1, 1
-                if left > 1:
-                    stride, count = pace.next(seen(), fastest * speed, left)
-                left -= stride * count
-                for _ in range(count):
-                    table.step(stride * STEP)
-                    if watch is not None:
-                        elapsed += stride * STEP
-                        gone += stride * speed * STEP
-                        watch(elapsed, gone, table.puck_pose())
-        move(0.0)
-        _settle(table, elapsed, gone, watch)
+        *,
+        whole: bool,
+        finer: int,
+    ) -> Pose:
+        """Run a motion to its end, from each contact until the puck lies still behind the tool."""
+        bodies, elapsed, gone = self._bodies, 0.0, 0.0
+        course = way.course(bodies)
+        whole = whole or watch is not None
+        while motion:
+            if not whole:
+                travel = way.to_contact(puck, gone, distance_of(motion))
+                if travel is None:
+                    break
+                skipped, motion = skip(motion, max(0.0, travel - CONTACT_MARGIN))
+                gone += skipped
+            way.lay_out(bodies, puck, gone)
+            if finer:
+                in_equal_steps(course, motion, finer)
+                motion = ()
+            else:
+                given = (course, self._around, self._puck, self._friction)
+                strides = Strides(*given, watch, elapsed, gone)
+                length, motion = distance_of(motion), strides.run(motion)
+                elapsed, gone = strides.elapsed, gone + length - distance_of(motion)
+            puck = _where(bodies, puck)
+        return puck
 
 
-def _settle(table: PuckAndTool, elapsed: float, gone: float, watch: Moment | None) -> None:
-    """Let the puck come to rest after the tool has stopped."""
-    for step in range(1, SETTLE_STEPS + 1):
-        if table.puck_speed() < REST_SPEED:
+def in_equal_steps(course: Course, motion: tuple[Stretch, ...], finer: int) -> None:
+    """Take a push to its end in equal steps: the simple way, which `Strides` is held against.
+
+    Args:
+        course: the push, laid out.
+        motion: the stretches that are left.
+        finer: so many steps in each short one.
+    """
+    bodies, step = course.bodies, STEP / finer
+    bodies.other_steps(step)
+    for speed, steps in motion:
+        course.move(speed)
+        for _ in range(steps * finer):
+            bodies.step(step)
+            bodies.align_brakes()
+    course.move(0.0)
+    for _ in range(round(REST_SECONDS / step)):
+        if math.hypot(*bodies.velocity()[:2]) < REST_SPEED:
             return
-        table.step(STEP)
-        if watch is not None:
-            watch(elapsed + step * STEP, gone, table.puck_pose())
+        bodies.step(step)
 
 
-def _rest(table: PuckAndTool, puck: Pose, wrist: Point) -> Pose:
+def _where(bodies: PuckAndTool, before: Pose) -> Pose:
     """Return where the puck lies now; SimulationDivergedError when that is nowhere."""
-    pose = table.puck_pose()
+    pose = bodies.puck_pose()
     if not all(map(math.isfinite, pose)):
         raise SimulationDivergedError(
-            f"the push from wrist ({wrist.x:.3f}, {wrist.y:.3f}) with the puck at "
-            f"({puck.x:.3f}, {puck.y:.3f}) gave {pose}; the behavior counts for nothing"
+            f"the push of the puck from ({before.x:.3f}, {before.y:.3f}) gave {pose}; the behavior "
+            "counts for nothing"
         )
     return pose

@@ -22,7 +22,7 @@ from affcli.core.tool import hold_of
 from affcli.core.world import Film
 from affcli.errors import BadInputError, one_line
 from affcli.simulation.arm import WRIST_ROLL_MAX, free_turn, reach_at
-from affcli.simulation.pushing import Moment
+from affcli.simulation.strides import Moment
 from affcli.simulation.table import Table
 from affcli.simulation.wrist_motion import (
     GRID,

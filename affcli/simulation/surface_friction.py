@@ -2,34 +2,79 @@
 
 A puck that presses evenly on the table resists sliding and turning together: the faster it turns
 about its own centre, the less it resists being moved sideways. One joint for sliding and one for
-turning miss that; a ring of points, each with its share of the weight, gets it right.
+turning miss that; points with a share of the weight each get it right.
 """
 
 import math
+from typing import NamedTuple
 
 import pymunk
-from pymunk._chipmunk_cffi import lib as chipmunk
 
 from affcli.core.workspace import PuckGeometry, SurfaceFriction
 
-POINTS = 12
-"""Against a quasi-static solver with even pressure, 300 pushes of 5 in end off by 0.001 in in the
-median and 0.15 in at most; with 8 points by 0.01 and 0.18, with 6 by 0.03 and 0.28. A few points
-favour some directions, and roll a puck along an edge that should only push it."""
-RING_RADIUS = 2.0 / 3.0
-"""Share of the puck's radius at which a ring resists turning as an even pressure does: the mean
-distance of a disc's points from its centre."""
+
+class Ring(NamedTuple):
+    """So many points, an even number, at a share of the puck's radius."""
+
+    points: int
+    radius: float
 
 
-def surface_friction(
-    table: pymunk.Body,
-    puck: pymunk.Body,
-    shape: PuckGeometry,
-    friction: SurfaceFriction,
-    *,
-    straight: bool = False,
-) -> list[pymunk.PivotJoint]:
-    """Return the joints by which the table brakes the puck, to be added to the Space.
+RINGS = (Ring(4, 2.0 / 3.0 * math.sqrt(1.0 / 3.0)), Ring(8, 1.0 - math.sqrt(1.0 / 27.0)))
+"""One ring for the inner third of the area and one for the rest, each at the mean distance of its
+area's points from the centre. Against a quasi-static solver with even pressure, at 1.25 in/s, 300
+pushes of 5 in turn by 0.2 degrees too much in the median and 5.5 at most; with twelve points in one
+ring by 0.7 and 11, with three and six by 0.5 and 13."""
+POINTS = sum(ring.points for ring in RINGS)
+GIVES_WAY = 1e300
+"""The mass of what never moves and only turns (kg); the engine takes none that is infinite."""
+
+
+class Brakes(NamedTuple):
+    """What brakes the puck.
+
+    Args:
+        joints: to be added to the Space.
+        counterpart: a body that stays out of the Space, and is to be turned as the puck is, to some
+            degrees.
+    """
+
+    joints: list[pymunk.PivotJoint]
+    counterpart: pymunk.Body
+
+
+class Place(NamedTuple):
+    """A point where the puck is braked, from its middle (in, the puck's own frame).
+
+    Args:
+        x, y: the point (in).
+        side: 1 or -1, other than that of its neighbours on the ring.
+    """
+
+    x: float
+    y: float
+    side: float
+
+
+def places(radius: float) -> list[Place]:
+    """Return where a puck of this radius is braked: opposite points after each other.
+
+    The solver takes the joints in turn. One that follows its opposite makes good what that one did
+    to the puck's turning, so mirrored pushes end mirrored after few sweeps.
+    """
+    return [
+        Place(ring.radius * radius * math.cos(angle), ring.radius * radius * math.sin(angle), side)
+        for ring in RINGS
+        for k in range(ring.points // 2)
+        for angle, side in (
+            (2.0 * math.pi * n / ring.points, -1.0 if n % 2 else 1.0)
+            for n in (k, k + ring.points // 2)
+        )
+    ]
+
+
+def surface_friction(puck: pymunk.Body, shape: PuckGeometry, friction: SurfaceFriction) -> Brakes:
+    """Return the joints by which the table brakes the puck.
 
     Each pivot opposes the velocity of one point of the puck with at most its share of the friction
     force. `max_bias` is 0: a pivot brakes, it never pulls the puck back to where it was.
@@ -37,48 +82,31 @@ def surface_friction(
     A puck whose centre of mass lies off its middle by the share e of its radius presses with
     1 + 3 e cos of the even pressure, by the angle from there: then that is where its weight acts.
 
+    The engine takes the impulse that would stop a point, and cuts it to the greatest force. Across
+    the radius a smaller one stops it, for there the puck gives way by turning; so what is left of
+    it would point too much along the radius, and a puck would turn by a fifth too much. Hence the
+    joints do not hold the puck to the table but to a counterpart, which can turn as easily as the
+    puck does, by arms across those of the puck: it gives way along the radius by as much, so any
+    point resists alike in all directions. On each ring every other arm points the other way, so
+    what turns the counterpart cancels, and it stands still as the table does.
+
     Args:
-        table, puck: the bodies.
+        puck: the body.
         shape: of the puck.
         friction: all coefficients.
-        straight: each joint brakes straight against its point's velocity; see `_straightener`.
     """
     share = friction.puck_table * shape.mass * friction.gravity / POINTS
     heavy = math.radians(shape.mass_direction_degrees)
+    middle = puck.center_of_gravity
+    counterpart = pymunk.Body(GIVES_WAY, puck.moment)
     joints = []
-    for k in range(POINTS):
-        angle = 2.0 * math.pi * k / POINTS
-        radius = RING_RADIUS * shape.radius
-        point = (radius * math.cos(angle), radius * math.sin(angle))
-        most = share * (1.0 + 3.0 * shape.mass_offset * math.cos(angle - heavy))
-        joints.append(_brake(table, puck, point, most))
-    return [*joints, _straightener(table, puck, joints[0])] if straight else joints
-
-
-def _brake(
-    table: pymunk.Body, puck: pymunk.Body, point: tuple[float, float], most: float
-) -> pymunk.PivotJoint:
-    """Return what opposes the velocity of one point of the puck with at most this force."""
-    joint = pymunk.PivotJoint(table, puck, (0.0, 0.0), point)
-    joint.max_force = most
-    joint.max_bias = 0.0
-    # Nothing of a deviation is corrected: told so, the engine need not compute how much.
-    joint.error_bias = 1.0
-    return joint
-
-
-def _straightener(
-    table: pymunk.Body, puck: pymunk.Body, first: pymunk.PivotJoint
-) -> pymunk.PivotJoint:
-    """Return what goes after the joints, so that each brakes straight against its point's velocity.
-
-    The engine takes the impulse that would stop a point, and cuts it to the greatest force. Across
-    the radius a smaller one stops it, for there the puck gives way by turning; so what is left of
-    it points too much along the radius, and a puck turns by a fifth too much. Here the puck cannot
-    turn while the joints are prepared, and any point resists alike.
-    """
-    body, moment = puck._body, puck.moment  # noqa: SLF001
-    last = _brake(table, puck, (0.0, 0.0), 0.0)
-    first.pre_solve = lambda *_: chipmunk.cpBodySetMoment(body, math.inf)
-    last.pre_solve = lambda *_: chipmunk.cpBodySetMoment(body, moment)
-    return last
+    for x, y, side in places(shape.radius):
+        arm = (-side * (y - middle.y), side * (x - middle.x))
+        joint = pymunk.PivotJoint(counterpart, puck, arm, (x, y))
+        angle = math.atan2(y, x)
+        joint.max_force = share * (1.0 + 3.0 * shape.mass_offset * math.cos(angle - heavy))
+        joint.max_bias = 0.0
+        # Nothing of a deviation is corrected: told so, the engine need not compute how much.
+        joint.error_bias = 1.0
+        joints.append(joint)
+    return Brakes(joints, counterpart)

@@ -6,7 +6,8 @@ from affcli.core.task import GoalRegion
 from affcli.core.tool import PUCK_COLOR, Hold, Tool, turned_outlines
 from affcli.core.workspace import Workspace
 from affcli.simulation.physics_settings import PhysicsSettings
-from affcli.simulation.pushing import Moment, PushSimulator
+from affcli.simulation.pushing import PushSimulator
+from affcli.simulation.strides import Moment
 from affcli.simulation.wrist_motion import Stretch, distance_of, on_grid
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from affcli.core.part import Part
 
-TABLE, TABLE_VERSION = "table", 1
+TABLE, TABLE_VERSION = "table", 2
 """The version is raised when equal specs give other records: by another physics, for example."""
 
 

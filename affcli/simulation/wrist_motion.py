@@ -22,6 +22,9 @@ STEP = 2.0**-9
 GRID = 2.0**-20
 """Resolution of the wrist's position (in)."""
 
+STAIR = 8
+"""Ramps change their speed after so many steps: where it changes at each, every step is its own."""
+
 
 class Stretch(NamedTuple):
     """`steps` physics steps at one speed (in/s)."""
@@ -36,28 +39,38 @@ def on_grid(length: float) -> float:
 
 
 @lru_cache(maxsize=1024)
-def trapezoid(distance: float, speed: float, acceleration: float) -> tuple[Stretch, ...]:
+def trapezoid(
+    distance: float, speed: float, acceleration: float, stair: int = STAIR
+) -> tuple[Stretch, ...]:
     """Return the stretches that cover `distance` exactly, speeding up, cruising, slowing down.
 
     Args:
         distance: how far (in), on the grid; 0 gives no stretches.
         speed: cruise speed (in/s).
         acceleration: in/s^2, rounded so that a ramp is a whole number of steps.
+        stair: so many steps of a ramp have one speed, the mean of what theirs would be.
 
-    A remainder shorter than one cruise step is covered by one more step while slowing down, where
-    its speed belongs: a step out of order would be a jerk that throws the puck off the tool.
+    What is left when the cruise is counted in whole steps makes all of them a little slower. Where
+    that would make them slower than the ramp it is one more step while slowing down, where its
+    speed belongs: a step out of order would be a jerk that throws the puck off the tool.
     """
     ramp_steps = max(1, round(speed / (acceleration * STEP)))
     gain = max(1, round(speed / ramp_steps * 2**10)) / 2**10
     ramp_steps = min(round(speed / gain), math.isqrt(int(distance / (gain * STEP))))
-    ramp = [gain * (k + 0.5) for k in range(ramp_steps)]
+    edges = [*range(0, ramp_steps, stair), ramp_steps] if ramp_steps else []
+    ramp = [Stretch(0.5 * gain * (a + b), b - a) for a, b in pairwise(edges)]
     rest = distance - gain * STEP * ramp_steps**2
     top = gain * ramp_steps if ramp_steps else speed
-    cruise = int(rest / (top * STEP))
-    remainder = (rest - cruise * top * STEP) / STEP
-    down = sorted([*ramp, remainder] if remainder else ramp, reverse=True)
-    middle = [Stretch(top, cruise)] if cruise else []
-    return (*(Stretch(v, 1) for v in ramp), *middle, *(Stretch(v, 1) for v in down))
+    cruise, remainder = divmod(rest, top * STEP)
+    if remainder and cruise:
+        slower, faster = divmod(round(rest / GRID), int(cruise) + 1)
+        if not ramp or slower * GRID / STEP >= ramp[-1].speed:
+            some = [Stretch((slower + 1) * GRID / STEP, faster)] if faster else []
+            most = Stretch(slower * GRID / STEP, int(cruise) + 1 - faster)
+            return (*ramp, *some, most, *reversed(ramp))
+    middle = [Stretch(top, int(cruise))] if cruise else []
+    last = [Stretch(remainder / STEP, 1)] if remainder else []
+    return (*ramp, *middle, *sorted([*ramp, *last], reverse=True))
 
 
 @lru_cache(maxsize=1024)

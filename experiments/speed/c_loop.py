@@ -1,7 +1,6 @@
 """The loop in C beside ours: `loop.c`, built when wanted and called with pymunk's own library."""
 
 import ctypes
-import math
 import shutil
 import subprocess
 import sys
@@ -14,7 +13,7 @@ from workload import OUTLINES, SETTINGS, Push
 from affcli.core.geometry import Point, Pose
 from affcli.simulation.contact import travel_to_contact
 from affcli.simulation.pushing import CONTACT_MARGIN
-from affcli.simulation.surface_friction import POINTS, RING_RADIUS
+from affcli.simulation.surface_friction import GIVES_WAY, POINTS, places
 from affcli.simulation.wrist_motion import STEP, distance_of, skip
 
 F, P = ctypes.c_double, ctypes.c_void_p
@@ -27,8 +26,9 @@ class CannotBuildError(Exception):
 class _Setup(ctypes.Structure):
     _fields_ = (
         *((n, F) for n in ("step", "radius", "mass", "tool_friction", "share", "slop", "bias")),
+        ("gives_way", F),
         *((n, ctypes.c_int) for n in ("iterations", "parts", "points")),
-        *(("boxes", P), ("pivots", P)),
+        *(("boxes", P), ("pivots", P), ("arms", P)),
     )
 
 
@@ -95,19 +95,18 @@ class LoopInC:
             raise CannotBuildError("pymunk's library does not show its functions")
         self._library = ctypes.CDLL(str(_build(folder)))
         self._library.world_new.restype = P
-        self._library.push_all.argtypes = [P, P, ctypes.c_int, P, ctypes.c_int, P]
+        self._library.push_all.argtypes = [P, P, ctypes.c_int, P, P]
         self._library.push_all.restype = ctypes.c_int64
         self._world = self._new_world()
 
-    def push(self, prepared: Prepared, *, paced: bool) -> int:
-        """Do all the pushes; return how many steps of the engine they took.
+    def push(self, prepared: Prepared) -> int:
+        """Do all the pushes in short steps; return how many steps of the engine they took.
 
         Args:
             prepared: the pushes; their ends are written there.
-            paced: choose steps as `simulation/pace.py`, else all short.
         """
         many = len(prepared.pushes)
-        given = (prepared.pushes, many, prepared.stretches, int(paced), prepared.ends)
+        given = (prepared.pushes, many, prepared.stretches, prepared.ends)
         return int(self._library.push_all(self._world, *given))
 
     def _new_world(self) -> int:
@@ -115,10 +114,9 @@ class LoopInC:
         puck, friction = SETTINGS.workspace.puck, SETTINGS.workspace.friction
         physics = SETTINGS.physics
         self._boxes = (F * (4 * len(OUTLINES)))(*(v for part in OUTLINES for v in part.bounds))
-        ring = RING_RADIUS * puck.radius
-        angles = [2.0 * math.pi * k / POINTS for k in range(POINTS)]
-        points = [v for a in angles for v in (ring * math.cos(a), ring * math.sin(a))]
-        self._pivots = (F * len(points))(*points)
+        points = [v for at in places(puck.radius) for v in (at.x, at.y)]
+        arms = [v for at in places(puck.radius) for v in (-at.side * at.y, at.side * at.x)]
+        self._pivots, self._arms = (F * len(points))(*points), (F * len(arms))(*arms)
         setup = _Setup(
             STEP,
             puck.radius,
@@ -127,11 +125,13 @@ class LoopInC:
             friction.puck_table * puck.mass * friction.gravity / POINTS,
             physics.collision_slop,
             (1.0 - physics.overlap_mended) ** round(1.0 / STEP),
+            GIVES_WAY,
             physics.iterations,
             len(OUTLINES),
             POINTS,
             ctypes.addressof(self._boxes),
             ctypes.addressof(self._pivots),
+            ctypes.addressof(self._arms),
         )
         return int(self._library.world_new(ctypes.byref(setup)))
 

@@ -1,8 +1,7 @@
-/* The push of affcli/simulation/pushing.py in C, on the same engine: what is left when Python costs nothing.
+/* `in_equal_steps` of affcli/simulation/pushing.py in C, on the same engine: what is left when Python costs nothing.
  *
  * The engine is the one that pymunk brings; its functions are found in its own library when this one is
  * loaded. A push begins just before contact, where the caller says: finding that out is not counted here.
- * Two ways to choose steps: all short ("the plain loop"), or those of affcli/simulation/pace.py.
  */
 #include <math.h>
 #include <stdint.h>
@@ -22,7 +21,6 @@ void cpSpaceSetCollisionSlop(Space *, double);
 void cpSpaceSetCollisionBias(Space *, double);
 void cpSpaceSetCollisionPersistence(Space *, unsigned int);
 void cpSpaceUseSpatialHash(Space *, double, int);
-Body *cpSpaceGetStaticBody(Space *);
 Body *cpSpaceAddBody(Space *, Body *);
 Shape *cpSpaceAddShape(Space *, Shape *);
 Constraint *cpSpaceAddConstraint(Space *, Constraint *);
@@ -43,20 +41,18 @@ void cpShapeSetFriction(Shape *, double);
 Constraint *cpPivotJointNew2(Body *, Body *, Vect, Vect);
 void cpConstraintSetMaxForce(Constraint *, double);
 void cpConstraintSetMaxBias(Constraint *, double);
+void cpConstraintSetErrorBias(Constraint *, double);
 
-/* pace.py */
-enum { STRIDE = 2, LOOK_AGAIN = 16, SETTLE = 8 };
-static const double DEEP = 0.005, MARGIN = 1.5;
 /* pushing.py */
-enum { SETTLE_STEPS = 512 };
-static const double REST_SPEED = 1e-6;
+static const double REST_SPEED = 1e-6, REST_SECONDS = 1.0;
 static const Vect FAR_AWAY = {1e3, 1e3};
 
 typedef struct {
-    double step, radius, mass, tool_friction, share, slop, bias;
+    double step, radius, mass, tool_friction, share, slop, bias, gives_way;
     int iterations, parts, points;
     const double *boxes;  /* parts x (left, bottom, right, top) */
-    const Vect *pivots;   /* points */
+    const Vect *pivots;   /* points, on the puck */
+    const Vect *arms;     /* points, on its counterpart */
 } Setup;
 
 typedef struct {
@@ -73,7 +69,7 @@ typedef struct { double x, y, angle; } Pose;
 typedef struct {
     Setup setup;
     Space *space;
-    Body *puck, *tool;
+    Body *puck, *tool, *counterpart;
     Constraint **joints;
 } World;
 
@@ -102,12 +98,13 @@ World *world_new(const Setup *setup) {
         cpShapeSetFriction(part, setup->tool_friction);
         cpSpaceAddShape(w->space, part);
     }
+    w->counterpart = cpBodyNew(setup->gives_way, 0.5 * setup->mass * (r * r));
     w->joints = malloc(setup->points * sizeof *w->joints);
     for (int i = 0; i < setup->points; i++) {
-        Body *table = cpSpaceGetStaticBody(w->space);
-        Constraint *joint = cpPivotJointNew2(table, w->puck, zero, setup->pivots[i]);
+        Constraint *joint = cpPivotJointNew2(w->counterpart, w->puck, setup->arms[i], setup->pivots[i]);
         cpConstraintSetMaxForce(joint, setup->share);
         cpConstraintSetMaxBias(joint, 0.0);
+        cpConstraintSetErrorBias(joint, 1.0);
         w->joints[i] = cpSpaceAddConstraint(w->space, joint);
     }
     return w;
@@ -125,67 +122,40 @@ static void place(World *w, Vect puck, double angle, Vect wrist) {
     cpSpaceReindexShapesForBody(w->space, w->tool);
 }
 
+static void align(World *w) {
+    cpBodySetAngle(w->counterpart, cpBodyGetAngle(w->puck));
+    cpBodySetAngularVelocity(w->counterpart, 0.0);
+}
+
 static void lay_out(World *w, const Push *p) {
     place(w, FAR_AWAY, p->angle, p->wrist);
     for (int i = 0; i < w->setup.points; i++) cpConstraintSetMaxForce(w->joints[i], 0.0);
     cpSpaceStep(w->space, w->setup.step);
     for (int i = 0; i < w->setup.points; i++) cpConstraintSetMaxForce(w->joints[i], w->setup.share);
     place(w, p->puck, p->angle, p->wrist);
+    align(w);
+    Vect zero = {0.0, 0.0};
+    cpBodySetVelocity(w->counterpart, zero);
 }
 
-/* Pace.next, for tools whose parts are all boxes. */
-static void next_steps(const World *w, double speed, int left, int *touched, int *stride, int *count) {
-    Vect puck = cpBodyGetPosition(w->puck), tool = cpBodyGetPosition(w->tool);
-    double x = puck.x - tool.x, y = puck.y - tool.y, overlap = 0.0, clearance = INFINITY;
-    for (int i = 0; i < w->setup.parts; i++) {
-        const double *b = w->setup.boxes + 4 * i;
-        double dx = fmax(fmax(b[0] - x, 0.0), x - b[2]), dy = fmax(fmax(b[1] - y, 0.0), y - b[3]);
-        double gap = hypot(dx, dy) - w->setup.radius;
-        if (gap < 0.0) {
-            if (overlap > 0.0) clearance = 0.0;
-            overlap = fmax(overlap, -gap);
-        } else {
-            clearance = fmin(clearance, gap);
-        }
-    }
-    int lasting = overlap > 0.0 && *touched;
-    *touched = overlap > 0.0;
-    *stride = 1;
-    if (overlap > DEEP || (overlap > 0.0 && !lasting)) {
-        *count = SETTLE < left ? SETTLE : left;
-        return;
-    }
-    double most = fmin(fmin(clearance / (MARGIN * speed * w->setup.step), LOOK_AGAIN), left);
-    int free_steps = (int)most;
-    if (lasting && free_steps >= STRIDE) {
-        *stride = STRIDE;
-        *count = free_steps / STRIDE;
-        return;
-    }
-    *count = free_steps > 1 ? free_steps : 1;
-}
-
-static Pose push(World *w, const Push *p, const Stretch *stretches, int paced, int64_t *steps) {
+static Pose push(World *w, const Push *p, const Stretch *stretches, int64_t *steps) {
     double step = w->setup.step;
-    int touched = 0;
     lay_out(w, p);
     for (int i = p->first; i < p->first + p->count; i++) {
         double speed = stretches[i].speed;
         Vect velocity = {speed * p->direction.x, speed * p->direction.y};
         cpBodySetVelocity(w->tool, velocity);
-        for (int left = (int)stretches[i].steps; left > 0;) {
-            int stride = 1, count = paced ? 1 : left;
-            if (paced && left > 1) next_steps(w, speed, left, &touched, &stride, &count);
-            left -= stride * count;
-            *steps += count;
-            for (int k = 0; k < count; k++) cpSpaceStep(w->space, stride * step);
+        *steps += stretches[i].steps;
+        for (int64_t k = 0; k < stretches[i].steps; k++) {
+            cpSpaceStep(w->space, step);
+            align(w);
         }
     }
     Vect zero = {0.0, 0.0};
     cpBodySetVelocity(w->tool, zero);
-    for (int k = 0; k < SETTLE_STEPS; k++) {
+    for (double rested = 0.0; rested < REST_SECONDS; rested += step) {
         Vect v = cpBodyGetVelocity(w->puck);
-        if (sqrt(v.x * v.x + v.y * v.y) < REST_SPEED) break;
+        if (hypot(v.x, v.y) < REST_SPEED) break;
         cpSpaceStep(w->space, step);
         ++*steps;
     }
@@ -195,8 +165,8 @@ static Pose push(World *w, const Push *p, const Stretch *stretches, int paced, i
 }
 
 /* Do `n` pushes; return how many steps of the engine they took. */
-int64_t push_all(World *w, const Push *pushes, int n, const Stretch *stretches, int paced, Pose *ends) {
+int64_t push_all(World *w, const Push *pushes, int n, const Stretch *stretches, Pose *ends) {
     int64_t steps = 0;
-    for (int i = 0; i < n; i++) ends[i] = push(w, &pushes[i], stretches, paced, &steps);
+    for (int i = 0; i < n; i++) ends[i] = push(w, &pushes[i], stretches, &steps);
     return steps;
 }

@@ -19,13 +19,14 @@ DEAD = 1.0
 
 def push_plainly(push: Push) -> Pose:
     """Return where the puck comes to rest."""
-    space, puck, tool = _world()
+    space, puck, tool, counterpart = _world()
     puck.angle, puck.position = push.puck.angle, push.puck.point
     tool.position = push.wrist
     for speed, steps in push.motion:
         tool.velocity = (speed * push.direction.x, speed * push.direction.y)
         for _ in range(steps):
             space.step(STEP)
+            counterpart.angle = puck.angle
     tool.velocity = (0.0, 0.0)
     for _ in range(round(DEAD / STEP)):
         if puck.velocity.length < REST_SPEED:
@@ -34,8 +35,8 @@ def push_plainly(push: Push) -> Pose:
     return Pose(puck.position.x, puck.position.y, puck.angle)
 
 
-def _world() -> tuple[pymunk.Space, pymunk.Body, pymunk.Body]:
-    """Return a Space with puck and tool, and the two."""
+def _world() -> tuple[pymunk.Space, pymunk.Body, pymunk.Body, pymunk.Body]:
+    """Return a Space with puck and tool, the two, and what makes the puck's brakes act straight."""
     shape, friction, physics = (
         SETTINGS.workspace.puck,
         SETTINGS.workspace.friction,
@@ -52,6 +53,6 @@ def _world() -> tuple[pymunk.Space, pymunk.Body, pymunk.Body]:
     parts = [pymunk.Poly(tool, list(outline.vertices)) for outline in OUTLINES]
     for part in parts:
         part.friction = friction.tool_puck
-    joints = surface_friction(space.static_body, puck, shape, friction)
-    space.add(puck, rim, tool, *parts, *joints)
-    return space, puck, tool
+    brakes = surface_friction(puck, shape, friction)
+    space.add(puck, rim, tool, *parts, *brakes.joints)
+    return space, puck, tool, brakes.counterpart

@@ -88,49 +88,39 @@ def _against_c(loop: LoopInC, pushes: Sequence[Push], scale: Scale) -> dict[str,
     """Measure, and compare where the pucks came to rest."""
     rounds = scale.of(ROUNDS, 1)
     size = len(pushes) // rounds
-    own, paced, short, paced_steps, short_steps = [], [], [], 0, 0
-    paced_apart: list[float] = []
-    short_apart: list[float] = []
-    identical = True
+    own, theirs, steps, identical = [], [], 0, True
+    apart: list[float] = []
     for i in range(rounds):
         block = pushes[i * size : (i + 1) * size]
         prepared = Prepared(block)
         time, mine = took(ours, block)
         own.append(time)
-        time, steps = took(loop.push, prepared, paced=True)
-        paced.append(time)
-        paced_steps += steps
-        identical &= prepared.poses == mine
-        paced_apart += map(distance, prepared.poses, mine)
-        time, steps = took(loop.push, prepared, paced=False)
-        short.append(time)
-        short_steps += steps
-        short_apart += map(distance, prepared.poses, mine)
-    if max(paced_apart) > 1e-9:
-        raise AssertionError(f"the loop in C ends {max(paced_apart)} in away from ours")
+        time, done = took(loop.push, prepared)
+        theirs.append(time)
+        steps += done
+        identical &= prepared.poses == [WORLD.push(*push, finer=1) for push in block]
+        apart += map(distance, prepared.poses, mine)
+    if not identical:
+        raise AssertionError("the loop in C ends elsewhere than the same steps in Python")
     pushed = size * rounds
-    same = ratios([t.cpu for t in paced], [t.cpu for t in own])
-    plain = ratios([t.cpu for t in short], [t.cpu for t in own])
-    found: dict[str, Any] = {"pushes": pushed, "most_apart_in": max(paced_apart)}
-    for key, words, one, all_steps, apart in (
-        ("same_steps", "of the same steps", same, paced_steps, paced_apart),
-        ("short_steps", "of short steps only", plain, short_steps, short_apart),
-    ):
-        held = bar(one.median, least=0.35)
-        equal = (
-            "equal to the bit"
-            if apart is paced_apart and identical
-            else f"{max(apart):.2g} in apart"
-        )
-        print(
-            f"loop: touched pushes a second, one world: {one} the loop in C {words} "
-            f"({pushed} pushes of 5 in, {all_steps / pushed:.0f} steps each, ends {equal}; "
-            f"{verdict(held)})"
-        )
-        found[key] = {**one.json(), **held, "steps_a_push": all_steps / pushed}
-    each = {"ours": ms(own, size), "c": ms(paced, size), "c_short": ms(short, size)}
-    print("loop: ms a push: " + ", ".join(f"{name} {value:.3f}" for name, value in each.items()))
-    return {**found, "ms_a_push": each, "identical": identical}
+    ratio = ratios([t.cpu for t in theirs], [t.cpu for t in own])
+    held = bar(ratio.median, least=0.35)
+    each = {"ours": ms(own, size), "c": ms(theirs, size)}
+    print(
+        f"loop: touched pushes a second, one world: {ratio} the loop in C of short steps "
+        f"({pushed} pushes of 5 in, {steps / pushed:.0f} steps each, {each['c']:.3f} ms, ours "
+        f"{each['ours']:.3f}; ends at most {max(apart):.2g} in apart, equal to the bit to the same "
+        f"steps in Python; {verdict(held)})"
+    )
+    return {
+        **ratio.json(),
+        **held,
+        "pushes": pushed,
+        "most_apart_in": max(apart),
+        "steps_a_push": steps / pushed,
+        "ms_a_push": each,
+        "identical": identical,
+    }
 
 
 def ms(times: Sequence[Took], size: int) -> float:

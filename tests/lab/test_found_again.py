@@ -9,6 +9,7 @@ import pytest
 from affcli import config
 from affcli.config import Settings, settings_with, with_sensor
 from affcli.core.identity import Component
+from affcli.core.records import ChangedPart
 from affcli.core.setting import Setting, Value
 from affcli.lab import learning
 from affcli.lab.learning import learn, made_by_other_defaults
@@ -17,12 +18,15 @@ from affcli.store import Store, open_store, upgrade
 from tests.factories import learning_spec
 from tests.lab.quick import now, spec_of, stored
 
+WORLD = ChangedPart("world", "table", "table@2")
 DATABASES = Path(__file__).parents[1] / "store" / "databases"
 
 
 @pytest.mark.parametrize("revision", ["0001", "0002", "0003"])
 def test_runs_of_every_past_revision_are_found_again(revision: str, tmp_path: Path) -> None:
-    """The same command says that it is done; one without its --config is another."""
+    """In the world that they were made in the same command says that it is done; in today's that
+    there is one of another; and one without its --config is another.
+    """
     path = Path(shutil.copy(DATABASES / f"{revision}.db", tmp_path / "old.db"))
     path.chmod(0o644)
     upgrade(path)
@@ -32,10 +36,15 @@ def test_runs_of_every_past_revision_are_found_again(revision: str, tmp_path: Pa
         for run in runs:
             spec, own = run.spec, settings_of(run.spec)
             limits = (spec.seed, spec.robot, spec.hours, spec.behaviors)
-            again = RunParts.chosen(own).spec(spec.tool, *limits)
+            today = RunParts.chosen(own).spec(spec.tool, *limits)
+            (alike,) = made_by_other_defaults(store, today)
+            assert (alike.run, alike.changed) == (run, (WORLD,))
+            again = replace(today, world=spec.world)
             assert made_by_other_defaults(store, again) == ()
             assert learn(store, again, now) == learning.Learned(run, new=False)
             usual = RunParts.chosen(with_sensor(Settings(), spec.sensor)).spec(spec.tool, *limits)
+            if usual == today:
+                continue
             # What somebody wished for was never a default.
             assert made_by_other_defaults(store, usual) == ()
 
@@ -75,7 +84,7 @@ def test_a_run_of_another_world_version_is_named_and_one_of_other_wishes_is_not(
     store.learning.begin(older, {}, now())
     (alike,) = made_by_other_defaults(store, spec)
     assert [(one.name, one.stored, one.wanted) for one in alike.changed] == [
-        ("world", "table@9", "table")
+        ("world", "table@9", "table@2")
     ]
     wished = spec_of("stick", 20, settings=settings_with({"babbling": {"draws": 9}}, "a test"))
     assert made_by_other_defaults(store, wished) == ()

@@ -306,9 +306,9 @@ def test_a_run_of_another_version_of_its_world_is_not_gone_on_with(
 ) -> None:
     monkeypatch.setattr(learning, "CHUNK", 10)
     half = cut_after(store, spec_of("stick"), 10)
-    later = replace(half.spec, world=Component("table", version=2))
+    later = replace(half.spec, world=Component("table", version=9))
     store.learning.begin(later, {}, now())
-    with pytest.raises(BadInputError, match="made in version 2 of the world table"):
+    with pytest.raises(BadInputError, match="made in version 9 of the world table"):
         learn(store, later, now)
 
 

@@ -354,7 +354,7 @@ def test_a_run_of_an_outsiders_explorer_is_done_again(
     [
         ("planner", "clairvoyant", "planner clairvoyant: this affcli has no such part"),
         ("planner", "nested-query@7", "this affcli has version 1 of it"),
-        ("world", "table@7", "made in version 7 of the world table, this affcli has 1"),
+        ("world", "table@7", "made in version 7 of the world table, this affcli has 2"),
         ("world", "moon", "world moon: this affcli has no such part"),
     ],
 )

@@ -32,11 +32,13 @@ def slide(
     space = pymunk.Space()
     space.iterations = 50
     body = pymunk.Body(PUCK.mass, 0.5 * PUCK.mass * RADIUS**2)
-    space.add(body, *surface_friction(space.static_body, body, PUCK, FRICTION))
+    brakes = surface_friction(body, PUCK, FRICTION)
+    space.add(body, *brakes.joints)
     body.velocity = (speed * math.cos(heading), speed * math.sin(heading))
     body.angular_velocity = spin
     while body.velocity.length > 1e-3 or abs(body.angular_velocity) > 1e-3:
         space.step(step)
+        brakes.counterpart.angle = body.angle
     return body.position.length, body.angle
 
 
@@ -85,9 +87,8 @@ def test_a_puck_that_slides_and_spins_stops_where_an_even_pressure_stops_it(
 
 
 def test_all_pivots_together_brake_with_mu_m_g() -> None:
-    body = pymunk.Body(PUCK.mass, 1.0)
-    joints = surface_friction(pymunk.Space().static_body, body, PUCK, FRICTION)
-    assert sum(joint.max_force for joint in joints) == pytest.approx(BRAKE * PUCK.mass)
+    brakes = surface_friction(pymunk.Body(PUCK.mass, 1.0), PUCK, FRICTION)
+    assert sum(joint.max_force for joint in brakes.joints) == pytest.approx(BRAKE * PUCK.mass)
 
 
 def test_a_tool_that_stops_at_once_lets_the_puck_slide_until_friction_has_taken_its_speed() -> None:

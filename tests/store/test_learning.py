@@ -67,7 +67,7 @@ def test_the_same_spec_finds_the_same_run(store: Store) -> None:
         replace(learning_spec(), binding=BehaviorCall.of(GRASP, {"grasp_point": 2.0})),
         replace(learning_spec(), explorer=Component.parse("focused:share=0.5")),
         replace(learning_spec(), sensor="exact"),
-        replace(learning_spec(), world=Component("table", version=2)),
+        replace(learning_spec(), world=Component("table", version=9)),
         replace(learning_spec(), held=learning_spec("stick").held),
     ],
 )
