@@ -19,8 +19,13 @@ from affcli.core.trial import BabblingRecord
 def drawn(box: BabblingSettings, rng: np.random.Generator) -> NDArray[np.float64]:
     """Return uniform draws of where the attractor may stand to the wrist (n, 2) (in)."""
     places = rng.random((box.draws, 2))
-    places[:, 0] = (2.0 * places[:, 0] - 1.0) * box.offset_x_max
-    places[:, 1] = box.offset_y_min + places[:, 1] * (box.offset_y_max - box.offset_y_min)
+    # In place: of so few numbers each array that is made takes longer than what is done with it.
+    x, y = places.T
+    x *= 2.0
+    x -= 1.0
+    x *= box.offset_x_max
+    y *= box.offset_y_max - box.offset_y_min
+    y += box.offset_y_min
     return places
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from operator import add
 
 import numpy as np
 
@@ -62,11 +63,14 @@ class NoisySensor:
     def observe(self) -> Observation:
         """Return the observation vector of this moment."""
         scene = self._look()
-        px, py, wx, wy, *tint = (self._rng.standard_normal(10) * self._spread).tolist()
-        x, y = scene.attractor.x + px, scene.attractor.y + py
-        dx, dy = x - (scene.wrist.x + wx), y - (scene.wrist.y + wy)
-        clean = (*scene.attractor_color, *scene.tool.color)
-        colors = [min(255.0, max(0.0, c + n)) for c, n in zip(clean, tint, strict=True)]
+        noise = self._rng.standard_normal(10)
+        noise *= self._spread
+        px, py, wx, wy, *tint = noise.tolist()
+        attractor, wrist = scene.attractor, scene.wrist
+        x, y = attractor.x + px, attractor.y + py
+        dx, dy = x - (wrist.x + wx), y - (wrist.y + wy)
+        seen = map(add, (*scene.attractor_color, *scene.tool.color), tint)
+        colors = [c if 0.0 <= c <= 255.0 else min(255.0, max(0.0, c)) for c in seen]
         return Observation(x, y, 0.0, dx, dy, 0.0, *colors)
 
     def observe_goal(self) -> GoalRegion:

@@ -51,12 +51,12 @@ class Reach:
     waist_min: float
     waist_max: float
 
-    def holds(self, point: Point) -> bool:
+    def holds(self, point: Point | Pose) -> bool:
         """Tell whether the ring holds `point` (in, table frame)."""
-        radius = math.hypot(point.x, point.y)
-        bearing = math.atan2(-point.x, point.y)
-        within = self.waist_min <= bearing <= self.waist_max
-        return within and self.inner <= radius <= self.outer
+        x, y = point[0], point[1]
+        if not self.inner <= math.hypot(x, y) <= self.outer:
+            return False
+        return self.waist_min <= math.atan2(-x, y) <= self.waist_max
 
     def at_angle(self, angle: float) -> "Reach":
         """Return the part of it where the roll can hold the wrist at an angle (rad, table frame).

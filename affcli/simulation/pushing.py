@@ -181,7 +181,6 @@ class PushSimulator:
     ) -> Pose:
         """Run a motion to its end, from each contact until the puck lies still behind the tool."""
         bodies, elapsed, gone = self._bodies, 0.0, 0.0
-        course = way.course(bodies)
         whole = whole or watch is not None
         while motion:
             if not whole:
@@ -191,6 +190,7 @@ class PushSimulator:
                 skipped, motion = skip(motion, max(0.0, travel - CONTACT_MARGIN))
                 gone += skipped
             way.lay_out(bodies, puck, gone)
+            course = way.course(bodies)
             if finer:
                 in_equal_steps(course, motion, finer)
                 motion = ()

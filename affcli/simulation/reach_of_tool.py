@@ -28,8 +28,10 @@ def touchable(
         radius: of the puck (in).
     """
     # Nearly always some point of the tool can be brought to the attractor's centre: the quick yes.
-    if any(reach.holds(Point(attractor.x - p.x, attractor.y - p.y)) for p in _points(outlines)):
-        return True
+    x, y = attractor
+    for p in _points(outlines):
+        if reach.holds(Point(x - p.x, y - p.y)):
+            return True
     return any(_part_touches(part, reach, attractor, radius) for part in outlines)
 
 

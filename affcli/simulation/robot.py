@@ -114,7 +114,8 @@ class SimulatedRobot:
             squared *= math.cos(self._low.waist_max)
             held &= y >= squared
         # Up to this angle the roll can undo all that the waist turns.
-        if np.any(np.abs(angle) > WRIST_ROLL_MAX - self._low.waist_max):
+        free = WRIST_ROLL_MAX - self._low.waist_max
+        if abs(angle) > free if isinstance(angle, float) else np.any(np.abs(angle) > free):
             held &= np.abs(angle + np.arctan2(x, y)) <= WRIST_ROLL_MAX
         return held
 
@@ -168,8 +169,10 @@ class SimulatedRobot:
     def _carry(self, to: Pose) -> ExecutionStatus:
         """Move lifted and lower the tool; keep it lifted there when the attractor lies under it."""
         target = Pose(on_grid(to.x), on_grid(to.y), to.angle)
-        reaches = (reach.at_angle(target.angle) for reach in (self._low, self._high))
-        if not all(reach.holds(target.point) for reach in reaches):
+        if not (
+            self._high.at_angle(to.angle).holds(target)
+            and self._low.at_angle(to.angle).holds(target)
+        ):
             return ExecutionStatus.OUT_OF_REACH
         timing, height = self._table.workspace.motion, self._table.workspace.arm.lift_height
         if self.film is not None:
@@ -183,11 +186,12 @@ class SimulatedRobot:
     def _carrying_time(self, target: Pose) -> float:
         """Return how long the wrist travels lifted (s); it turns meanwhile."""
         timing, wrist = self._table.workspace.motion, self._table.wrist
-        travel, turn = math.dist(wrist.point, target.point), abs(target.angle - wrist.angle)
-        return max(
-            trapezoid_time(travel, timing.transfer_speed, timing.transfer_acceleration),
-            trapezoid_time(math.degrees(turn), timing.turn_speed, timing.turn_acceleration),
-        )
+        travel = math.dist(wrist.point, target.point)
+        seconds = trapezoid_time(travel, timing.transfer_speed, timing.transfer_acceleration)
+        if target.angle == wrist.angle:
+            return seconds
+        turn = math.degrees(abs(target.angle - wrist.angle))
+        return max(seconds, trapezoid_time(turn, timing.turn_speed, timing.turn_acceleration))
 
     def _slide(self, dx: float, dy: float) -> ExecutionStatus:
         """Slide straight on the table, as far as the reach goes."""

@@ -153,7 +153,7 @@ class Strides:
         self._watch = watch
         self.elapsed, self.gone = elapsed, gone
         self._velocity = (0.0, 0.0, 0.0)
-        self._slowing = self._turned = 0.0
+        self._slowing = self._turned = self._nearer = 0.0
         self._touched = self._lasted = 0
         self._stride = self._last = 1
         self._met = False
@@ -164,10 +164,11 @@ class Strides:
         before = 0.0
         for k, (speed, steps) in enumerate(motion):
             self._move(speed)
+            self._nearer = MARGIN * self._fastest * speed * STEP
             self._slowing = self._follow(before, speed, steps) if before else 0.0
             before, left = speed, steps
             while left:
-                stride = self._next(speed, left)
+                stride = self._next(left)
                 if not stride:
                     return (Stretch(speed, left), *motion[k + 1 :])
                 left -= stride
@@ -190,23 +191,22 @@ class Strides:
         """
         if not self._follows(speed - before, steps):
             return 0.0
-        x, y, turning = (speed / before * v for v in self._velocity)
-        self._velocity = (x, y, turning)
-        self._bodies.set_velocity(x, y, turning)
+        x, y, turning = self._velocity
+        ratio = speed / before
+        self._velocity = (ratio * x, ratio * y, ratio * turning)
+        self._bodies.set_velocity(*self._velocity)
         return (1.0 - before / speed) / (steps * STEP)
 
-    def _next(self, speed: float, left: int) -> int:
+    def _next(self, left: int) -> int:
         """Return how many short steps the next stride takes; 0 when the puck lies still, the tool
         having left it.
 
         Args:
-            speed: of the tool (in/s).
             left: short steps left at this speed.
         """
-        x, y = self._seen()
-        touched, clearance = self._around(x, y)
-        free = int(min(clearance / (MARGIN * self._fastest * speed * STEP), left))
-        before, self._center = self._center, (x, y)
+        before, self._center = self._center, self._seen()
+        touched, clearance = self._around(*self._center)
+        free = left if clearance >= left * self._nearer else int(clearance / self._nearer)
         if touched != self._touched:
             self._touched, self._lasted, self._stride = touched, 0, 1
         if not touched:
@@ -219,7 +219,7 @@ class Strides:
         stride = min(self._stride, left)
         if free < stride:
             # Near another part, but maybe not on the way to it.
-            closing = self._around.closing(before, (x, y)) / self._last
+            closing = self._around.closing(before, self._center) / self._last
             stride = max(1, int(min(stride, 1.0 / (MARGIN * closing) if closing > 0.0 else stride)))
         return stride
 
