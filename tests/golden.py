@@ -1,7 +1,7 @@
 """Digests of what robots did: equal digests mean equal numbers, to the last bit.
 
-The expected ones in ``golden.json`` are of version 2 of the world `table`, over the columns below in
-the order of their rows. They change only when the physics or a default changes, and then for a
+The expected ones in ``golden.json`` are of version 2 of the world `table`, over the columns below
+in the order of their rows. They change only when the physics or a default changes, and then for a
 reason that the commit gives.
 """
 
