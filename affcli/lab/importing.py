@@ -38,7 +38,7 @@ def files_of(patterns: Sequence[str]) -> list[Path]:
     """
     found: dict[Path, None] = {}
     for pattern in patterns:
-        is_pattern = has_magic(pattern) and not Path(pattern).exists()
+        is_pattern = has_magic(pattern) and not _is_there(pattern)
         # Path.glob takes no absolute pattern, and no `..` in one.
         names = sorted(glob(pattern, recursive=True)) if is_pattern else [pattern]  # noqa: PTH207
         files = [Path(name) for name in names if not is_pattern or Path(name).is_file()]
@@ -50,6 +50,14 @@ def files_of(patterns: Sequence[str]) -> list[Path]:
                 f"log {one_line(pattern)}: more than {MOST_FILES} files; import some of them"
             )
     return list(found)
+
+
+def _is_there(name: str) -> bool:
+    """Tell whether there is a file of just this name."""
+    try:
+        return Path(name).exists()
+    except OSError:  # a name that is too long for one
+        return False
 
 
 def read(patterns: Sequence[str], how: Path) -> tuple[Log, list[LoggedRun]]:

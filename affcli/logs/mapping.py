@@ -240,7 +240,7 @@ def _remark(place: str, value: object) -> str:
         raise BadInputError(
             f"{place} = {one_line(value, 40)}: must be text of 1 to {LONGEST_REMARK} letters"
         )
-    return one_line(value, LONGEST_REMARK)
+    return one_line(" ".join(value.split()), LONGEST_REMARK)  # BibTeX stands on several lines
 
 
 def _comment(value: object) -> str:

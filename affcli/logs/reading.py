@@ -165,6 +165,11 @@ class _File:
         if first is None:
             return
         if self._how.header:
+            if len(first[1]) > LONGEST_LINE:
+                raise BadInputError(
+                    f"log {one_line(self._path)}: its header has more than {LONGEST_LINE} letters; "
+                    "is this the right file?"
+                )
             where = self._columns([name.strip() for name in self._split(first[1])])
         else:
             where, lines = self._columns(None), self._content()

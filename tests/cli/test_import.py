@@ -197,6 +197,7 @@ def test_a_deleted_run_goes_with_its_log(imported: Path, tmp_path: Path) -> None
     [
         (("import", "none*.txt", "--map", "map.toml"), "no file fits this pattern"),
         (("import", "none.txt", "--map", "map.toml"), "No such file"),
+        (("import", "x" * 300 + "*", "--map", "map.toml"), "no file fits this pattern"),
         (("import", "log", "--map", "map.toml"), "Is a directory"),
         (("import", PATTERN, "--map", "none.toml"), "No such file"),
     ],

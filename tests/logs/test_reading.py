@@ -140,6 +140,8 @@ def test_there_are_limits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(reading, "MOST_TRIALS", 3)
     with pytest.raises(BadInputError, match="more than 3 trials; import them in parts"):
         read(tmp_path, MAP, "a b 3 0 0 1 2 0 0 3 4\n" * 4)
+    with pytest.raises(BadInputError, match="its header has more than 20000 letters"):
+        read(tmp_path, CSV, '"' + "x" * 200_000)
     monkeypatch.setattr(reading, "LARGEST_LOG", 10)
     with pytest.raises(BadInputError, match="more than 10 bytes"):
         read(tmp_path, MAP, "a b 3 0 0 1 2 0 0 3 4\n")
