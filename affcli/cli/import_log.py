@@ -59,12 +59,13 @@ def import_log(
     map again say that they are there.
     """
     log, runs = lab.importing.read(files, how)
-    _say_bad(log, strict=strict)
-    say(log_words(log))
+    if strict:
+        log.require_whole()
     done: list[lab.importing.Imported] = []
     if not dry_run:
         with opened(database, create=True, write=True) as store:
             done = lab.importing.import_runs(store, runs, now, note)
+    _say_read(log)
     infos = {one.info.spec.tool: one.info for one in done}
     found = [(run, infos.get(run.spec.tool)) for run in runs]
     new = {one.info.id for one in done if one.new}
@@ -84,10 +85,9 @@ def import_log(
         say(f"which tool pulls? {with_database('affcli which nearer', database)}")
 
 
-def _say_bad(log: Log, *, strict: bool) -> None:
-    """Say which lines could not be read; BadInputError when none may be left out."""
-    if strict:
-        log.require_whole()
+def _say_read(log: Log) -> None:
+    """Say what was read, and which lines could not be."""
+    say(log_words(log))
     for line in log.bad[:MOST_NAMED]:
         say(f"left out: {one_line(line)}")
     more = log.left_out - MOST_NAMED

@@ -14,7 +14,7 @@ from affcli.store import waiting
 from tests.attack.attacks import has_database, named, plainly
 from tests.cli.program import affcli, names_in, one_printable_line
 from tests.fuzz.commands import Command
-from tests.states.commands import EXPERIMENT
+from tests.states.commands import EXPERIMENT, LOG, MAP
 
 COMMANDS = [command for command in named() if has_database(command)]
 HELD_BY = "another process, probably another affcli"
@@ -44,6 +44,9 @@ def test_every_command_waits_says_for_whom_and_gives_up_after_what_it_says(
 ) -> None:
     if command.name == "experiment":
         (learned.parent / "two.toml").write_text(EXPERIMENT)
+    if command.name == "import":
+        (learned.parent / "log.txt").write_text(LOG)
+        (learned.parent / "map.toml").write_text(MAP)
     ended = affcli(*plainly(command), "--db", learned, cwd=learned.parent)
     assert ended.code == 3, ended
     lines = ended.err.splitlines()
@@ -55,7 +58,7 @@ def test_every_command_waits_says_for_whom_and_gives_up_after_what_it_says(
     else:
         assert said in one_printable_line("\n".join(lines) + "\n")
         assert ended.out == ""
-    assert set(names_in(learned.parent)) <= {learned.name, "two.toml"}
+    assert set(names_in(learned.parent)) <= {learned.name, "two.toml", "log.txt", "map.toml"}
 
 
 @pytest.mark.fault(40)

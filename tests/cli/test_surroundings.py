@@ -108,7 +108,7 @@ def test_the_clock_decides_nothing(
         def now(cls, tz: object = None) -> "Clock":
             return cls(years[number % len(years)], 1, 2, tzinfo=UTC)
 
-    monkeypatch.setattr("affcli.cli.terminal.datetime", Clock)
+    monkeypatch.setattr("affcli.lab.clock.datetime", Clock)
     for number, line in enumerate(USED):  # noqa: B007 the clock asks for it
         done(*line.split(), "--db", "other.db", cwd=tmp_path)
     assert contents(tmp_path / "other.db") == contents(tmp_path / "usual.db")
