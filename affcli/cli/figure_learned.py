@@ -1,5 +1,6 @@
 """``affcli figure``: what was learned (Figs. 5 and 6), and the laboratory (Figs. 1, 8 and 9)."""
 
+import math
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
@@ -277,7 +278,9 @@ def _runs_to_draw(
         runs = [store.learning.run(one) for one in dict.fromkeys(ids)]
     else:
         begun = [run for run in store.learning.runs() if run.behaviors]
-        runs = [run for run in begun if not tools or run.spec.tool in tools]
+        meant = [run for run in begun if not tools or run.spec.tool in tools]
+        # A log without times has no curve; it is refused where nothing else is there.
+        runs = [run for run in meant if not math.isnan(run.robot_seconds)] or meant
     if not runs:
         reproduced = store.sessions.all(*LIVES)
         if reproduced:

@@ -151,6 +151,8 @@ def test_a_tool_of_a_log_does_not_take_the_place_of_one_that_was_learned(tmp_pat
     done("import", PATTERN, "--map", "map.toml", *db, cwd=tmp_path)
     done("solve", "--goal", "2", "--tool", "stick", *db, cwd=tmp_path)
     assert rows(tmp_path / "both.db", "SELECT DISTINCT learning_run_id FROM trial") == [(1,)]
+    drawn = done("figure", "learning", "--out", "a.svg", *db, cwd=tmp_path).err
+    assert "run 1: Stick" in " ".join(drawn.split())
     found = done("which", "nearer", "--tool", "stick", *db, "--json", cwd=tmp_path).results
     assert {one["run"] for one in found} == {4}
 
