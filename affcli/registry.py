@@ -124,7 +124,7 @@ def tool(text: str, geometry: "ToolGeometry") -> Tool:
             file is not as it must be.
     """
     if names_file(text):
-        return _own_tool(Path(text), geometry)
+        return own_tool(Path(text), geometry)
     chosen = component("tools", text)
     made: Tool = _built("tools", chosen)(geometry)
     if made.name != chosen.name:
@@ -132,19 +132,33 @@ def tool(text: str, geometry: "ToolGeometry") -> Tool:
     return made
 
 
-def _own_tool(path: Path, geometry: "ToolGeometry") -> Tool:
-    """Return a person's own tool, which must not be taken for a registered one.
+def own_tool(path: Path, geometry: "ToolGeometry") -> Tool:
+    """Return a person's own tool, from its file.
+
+    Raises:
+        BadInputError: the file is not as it must be, or `require_own_tool`.
+    """
+    from affcli.tool_files import tool_from_file  # few give a file
+
+    made = tool_from_file(path)
+    require_own_tool(made, geometry, f"tool {one_line(path)}")
+    return made
+
+
+def require_own_tool(made: Tool, geometry: "ToolGeometry", source: str) -> None:
+    """Make sure that a person's own tool is not taken for a registered one.
+
+    Args:
+        made: the tool.
+        geometry: the sizes of the registered ones, and where a tool is grasped.
+        source: where it comes from, for the message.
 
     Raises:
         BadInputError: it has the name of one, or its colour as the table sees colours (search 1 of
             §6.2); or there is nothing of it where it is grasped.
     """
-    # Few give a file; and NumPy takes long to load.
-    from affcli.core.affordance_table import COLOR_TOLERANCE
-    from affcli.tool_files import tool_from_file
+    from affcli.core.affordance_table import COLOR_TOLERANCE  # NumPy takes long to load
 
-    made = tool_from_file(path)
-    source = f"tool {one_line(path)}"
     for name in parts("tools"):
         if name == made.name:
             raise BadInputError(f"{source}: there is a {name}; give it another name")
@@ -159,7 +173,6 @@ def _own_tool(path: Path, geometry: "ToolGeometry") -> Tool:
             f"{source}: nothing to grasp at x = 0, {geometry.handle_below_grasp:g} in above its "
             "lower end; let the handle lie there"
         )
-    return made
 
 
 def names_file(text: str) -> bool:

@@ -2,7 +2,8 @@
 
 ``[experiment]`` names it, ``[base]`` is what all conditions share, each ``[[condition]]`` is the
 base but for what it says, and ``[sweep]`` holds lists of values: every point of their grid is a
-condition. What the store keeps is such a file too, with base and sweep written out everywhere.
+condition. What the store keeps is such a file too, with base and sweep written out everywhere, and
+what the files of tools say under ``[[tool]]``.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -29,10 +30,11 @@ from affcli.core.part import Kind
 from affcli.core.specs import BROKEN_SHAPE, BROKEN_TOOL
 from affcli.errors import BadInputError, UsageError, one_line
 from affcli.lab.experiment import ADAPTATION, ADAPTATION_TASKS, Condition, Experiment
+from affcli.lab.own_parts import TOOLS, OwnParts
 from affcli.lab.run_parts import RunParts, tasks_of
 from affcli.simulation.tools.paper import TOOL_PARTS
 
-TABLES = ("experiment", "base", "condition", "sweep")
+TABLES = ("experiment", "base", "condition", "sweep", TOOLS)
 HEAD = ("name", "question", "robots", "seed", "tasks")
 NAMED: Mapping[str, Kind] = {
     "explorer": "explorers",
@@ -72,14 +74,21 @@ def experiment_file(path: Path) -> Experiment:
             the file and the place in it.
     """
     source = f"experiment {one_line(path)}"
-    return experiment_of(toml_file(path, source), source)
+    return experiment_of(toml_file(path, source), source, path.parent)
 
 
-def experiment_of(tables: Mapping[str, Any], source: str) -> Experiment:
-    """Return the experiment that tables describe, as a file has them; see `experiment_file`."""
+def experiment_of(tables: Mapping[str, Any], source: str, folder: Path | None = None) -> Experiment:
+    """Return the experiment that tables describe, as a file has them; see `experiment_file`.
+
+    Args:
+        tables: what the file says.
+        source: where it is, for the message.
+        folder: from which its files are named; None for a stored form, which names none.
+    """
     with _at(source):
         for table in tables:
             one_of("table", table, TABLES)
+        own_parts = OwnParts(folder, tables.get(TOOLS, ()))
         head = _table(tables, "experiment")
         base, sweep = _table(tables, "base"), _table(tables, "sweep")
     place = f"{source}: experiment"
@@ -90,10 +99,11 @@ def experiment_of(tables: Mapping[str, Any], source: str) -> Experiment:
         question = _text(head.get("question", ""), "question", LONGEST_QUESTION, least=0)
         robots = _whole(head.get("robots"), "robots", 1, MOST_ROBOTS)
         seed = _whole(head.get("seed", 0), "seed", 0, LARGEST_SEED)
-    shared = _said({key: head[key] for key in head if key == "tasks"}, place)
-    shared |= _said(base, f"{source}: base")
-    named = _named_conditions(tables.get("condition", []), source)
-    grid = _grid(sweep, f"{source}: sweep", MOST_CONDITIONS // max(len(named), 1))
+    shared = _said({key: head[key] for key in head if key == "tasks"}, place, own_parts)
+    shared |= _said(base, f"{source}: base", own_parts)
+    named = _named_conditions(tables.get("condition", []), source, own_parts)
+    most = MOST_CONDITIONS // max(len(named), 1)
+    grid = _grid(sweep, f"{source}: sweep", most, own_parts)
     conditions, forms = [], []
     there: dict[str, str] = {}
     for where, own, said in named:
@@ -107,13 +117,14 @@ def experiment_of(tables: Mapping[str, Any], source: str) -> Experiment:
                         f"the name {one_line(title, 200)} has more than {LONGEST_NAME} letters; "
                         "give the condition a shorter one, or sweep fewer things at once"
                     )
-                condition, form = _condition(title, shared | said | point)
+                condition, form = _condition(title, shared | said | point, own_parts)
                 _require_new(condition, there)
             conditions.append(condition)
             forms.append(form)
     definition = {
         "experiment": {"name": name, "question": question, "robots": robots, "seed": seed},
         "condition": forms,
+        **own_parts.stored(),
     }
     if len(canonical_json(definition).encode()) > LARGEST_DEFINITION:
         raise BadInputError(
@@ -167,7 +178,9 @@ def _hours(value: object, of_an_hour: float) -> float:
     return value / of_an_hour  # type: ignore[operator]
 
 
-def _named_conditions(tables: object, source: str) -> list[tuple[str, str, Said]]:
+def _named_conditions(
+    tables: object, source: str, own_parts: OwnParts
+) -> list[tuple[str, str, Said]]:
     """Return the place, the name and what is said of each condition; without any, of one."""
     if not isinstance(tables, list) or not all(isinstance(one, dict) for one in tables):
         raise BadInputError(f"{source}: condition must be tables, [[condition]]")
@@ -176,12 +189,15 @@ def _named_conditions(tables: object, source: str) -> list[tuple[str, str, Said]
         place = f"{source}: condition[{number}]"
         with _at(place):
             name = _text(table.get("name"), "name", LONGEST_NAME)
-        said = _said({key: value for key, value in table.items() if key != "name"}, place)
+        own = {key: value for key, value in table.items() if key != "name"}
+        said = _said(own, place, own_parts)
         named.append((place, name, said))
     return named or [(source, "", {})]
 
 
-def _grid(table: Mapping[str, Any], place: str, most: int) -> list[tuple[str, Said]]:
+def _grid(
+    table: Mapping[str, Any], place: str, most: int, own_parts: OwnParts
+) -> list[tuple[str, Said]]:
     """Return the name and what is said of each point of a grid; one of no name without a sweep."""
     axes: dict[str, Any] = {}
     for key, values in _by_name(table, place):
@@ -195,9 +211,9 @@ def _grid(table: Mapping[str, Any], place: str, most: int) -> list[tuple[str, Sa
         raise BadInputError(f"{place}: more than {MOST_CONDITIONS} conditions; sweep fewer values")
     points = [
         [
-            (f"{last if short.count(last) == 1 else key}={_shown(value)}", _said({key: value}, at))
+            (f"{last if short.count(last) == 1 else key}={_shown(value, own_parts)}", said)
             for number, value in enumerate(values)
-            for at in [f"{place}[{number}]"]
+            for said in [_said({key: value}, f"{place}[{number}]", own_parts)]
         ]
         for last, (key, values) in zip(short, axes.items(), strict=True)
     ]
@@ -207,11 +223,13 @@ def _grid(table: Mapping[str, Any], place: str, most: int) -> list[tuple[str, Sa
     ]
 
 
-def _shown(value: Any) -> str:
+def _shown(value: Any, own_parts: OwnParts) -> str:
     """Return a swept value as it stands in the name of a condition."""
     if isinstance(value, list):
-        return "+".join(map(_shown, value))
-    return shown(value) if isinstance(value, int | float) else one_line(value, LONGEST_NAME)
+        return "+".join(_shown(one, own_parts) for one in value)
+    if isinstance(value, int | float):
+        return shown(value)
+    return one_line(own_parts.name(str(value)), LONGEST_NAME)
 
 
 def _by_name(table: Mapping[str, Any], place: str) -> Iterator[tuple[str, Any]]:
@@ -243,7 +261,7 @@ def _require_unsaid(given: str, said: Iterable[str], place: str) -> None:
         raise BadInputError(f"{place}.{given}: {key} is said twice")
 
 
-def _said(table: Mapping[str, Any], place: str) -> Said:
+def _said(table: Mapping[str, Any], place: str, own_parts: OwnParts) -> Said:
     """Return what a table says, each value checked by itself."""
     said: Said = {}
     for given, value in _by_name(table, place):
@@ -256,12 +274,12 @@ def _said(table: Mapping[str, Any], place: str) -> Said:
             if key == "hours":
                 said[key] = _hours(value, 1.0 if given == "hours" else 60.0)
             else:
-                said[key] = _parts(key, value)
+                said[key] = _parts(key, value, own_parts)
     return said
 
 
-def _parts(key: str, value: object) -> str | list[str]:
-    """Return the parts that are asked for by name, each as it is written."""
+def _parts(key: str, value: object, own_parts: OwnParts) -> str | list[str]:
+    """Return the parts that are asked for by name or file, each by its name as it is written."""
     given: list[object] = value if isinstance(value, list) and key in LISTS else [value]
     texts = [one for one in given if isinstance(one, str)]
     if key not in NAMED or not texts or texts != given:
@@ -269,6 +287,10 @@ def _parts(key: str, value: object) -> str | list[str]:
         raise BadInputError(f"{one_line(value, 40)} must be {kind}")
     found = []
     for text in texts:
+        name = own_parts.name(text) if key == "tools" else text
+        if key == "tools" and name in own_parts.tools:
+            found.append(name)
+            continue
         if key == "tasks" and not {":", "@"} & set(text):
             one_of("tasks", text, [*registry.parts("tasks"), ADAPTATION])
         own = text if text == ADAPTATION else registry.component(NAMED[key], text)
@@ -280,7 +302,7 @@ def _parts(key: str, value: object) -> str | list[str]:
     return found if key in LISTS else found[0]
 
 
-def _condition(name: str, said: Said) -> tuple[Condition, dict[str, Any]]:
+def _condition(name: str, said: Said, own_parts: OwnParts) -> tuple[Condition, dict[str, Any]]:
     """Return a condition of all that is said of it, and its stored form."""
     own = {**USUAL, **{key: value for key, value in said.items() if "." not in key}}
     # By its version, as one that is said: read again, the stored form is to be the same.
@@ -292,15 +314,16 @@ def _condition(name: str, said: Said) -> tuple[Condition, dict[str, Any]]:
     )
     planner = registry.component("planners", own["planner"])
     registry.planner(planner)
-    condition = Condition(
-        *(name, parts, planner, own["hours"], tuple(own["tools"]), tuple(own["tasks"]))
-    )
+    tools = tuple(own_parts.tools.get(tool, tool) for tool in own["tools"])
+    condition = Condition(name, parts, planner, own["hours"], tools, tuple(own["tasks"]))
     world = condition.world
     for task_set in condition.tasks:
         tasks_of(world, ADAPTATION_TASKS if task_set == ADAPTATION else task_set, 0)
-    for tool in (*condition.tools, BROKEN_SHAPE):
-        parts.tool(tool)
-    _require_use(condition.tools, condition.tasks)
+    for tool in (*tools, BROKEN_SHAPE):
+        made = parts.tool(tool)
+        if tool is made:
+            registry.require_own_tool(made, settings.workspace.tools, f"tool {made.name}")
+    _require_use(own["tools"], condition.tasks)
     default = {key: one.default for key, one in known_settings().items()}
     differing = {k: v for k, v in settings.values().items() if v != default[k] and k != SENSOR}
     sensor = {"sensor": parts.sensor, "settings": differing}

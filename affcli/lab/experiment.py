@@ -25,6 +25,7 @@ from affcli.core.specs import (
     Tested,
     TrialRecord,
 )
+from affcli.core.tool import Tool
 from affcli.core.world import World
 from affcli.lab.believing import TOLD, ToldRun, is_told, told_spec
 from affcli.lab.learning_run import LearningRun
@@ -45,7 +46,7 @@ class Condition:
         parts: what its learning runs carry.
         planner: how its robots choose rows.
         hours: robot hours with each tool.
-        tools: which are learned, by name.
+        tools: which are learned: registered ones by name, a person's own by value.
         tasks: sets of tasks, each done with every tool; and maybe `ADAPTATION`.
     """
 
@@ -53,7 +54,7 @@ class Condition:
     parts: RunParts
     planner: Component
     hours: float
-    tools: tuple[str, ...]
+    tools: tuple[str | Tool, ...]
     tasks: tuple[str, ...]
 
     @property
@@ -99,7 +100,7 @@ class Condition:
             "name": self.name,
             "planner": self.planner.canonical(),
             "hours": self.hours,
-            "tools": [self.parts.tool(name).canonical() for name in self.tools],
+            "tools": [self.parts.tool(tool).canonical() for tool in self.tools],
             "tasks": list(self.tasks),
         }
 

@@ -52,19 +52,28 @@ class RunParts(Parts):
         )
 
     def spec(
-        self, tool: str, seed: int, robot: int, hours: float | None, behaviors: int | None = None
+        self,
+        tool: str | Tool,
+        seed: int,
+        robot: int,
+        hours: float | None,
+        behaviors: int | None = None,
     ) -> LearningSpec:
         """Return what a learning run with these parts is a function of.
 
         Args:
-            tool: name of a registered tool.
+            tool: as in `tool`.
             seed, robot, hours, behaviors: as in `LearningSpec`.
         """
         return LearningSpec(self.tool(tool), seed, robot, hours, behaviors, **self.carried())
 
-    def tool(self, name: str) -> Tool:
-        """Return a registered tool in these settings' sizes; UsageError for an unknown one."""
-        return registry.tool(name, settings_of_text(self.settings).workspace.tools)
+    def tool(self, tool: str | Tool) -> Tool:
+        """Return a tool: a registered one by its name in these settings' sizes, a person's own by
+        its file or by its value; UsageError for an unknown one.
+        """
+        if isinstance(tool, Tool):
+            return tool
+        return registry.tool(tool, settings_of_text(self.settings).workspace.tools)
 
 
 def beyond_the_box(learned: LearningSpec) -> str:
