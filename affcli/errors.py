@@ -41,6 +41,12 @@ class SimulationDivergedError(AffcliError):
     exit_code = 4
 
 
+class PartFailedError(AffcliError):
+    """A part of another package failed while it was used; its message names both."""
+
+    exit_code = 4
+
+
 class WorkersDiedError(AffcliError):
     """Worker processes died, as they do where there is not enough memory for so many."""
 

@@ -1,12 +1,14 @@
 """Parts by name: the one place where a name becomes a tool, a behavior, a planner, a world.
 
-A part is found by the tuple PARTS of a file in its room: adding one is adding a file. A sensor is
-made by `simulation.sensing`, which must know it, too.
+A part is found by the tuple PARTS of a file in its room: adding one is adding a file. Where a name
+is none of ours, the installed packages are asked (`affcli.plugins`). A sensor is made by
+`simulation.sensing`, which must know it, too.
 """
 
 import math
 import pkgutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cache, partial
 from importlib import import_module
 from itertools import chain
@@ -27,6 +29,8 @@ if TYPE_CHECKING:
     from affcli.core.ports import Explorer, Planner
     from affcli.core.workspace import ToolGeometry
     from affcli.core.world import Setting, World
+    from affcli.errors import PartFailedError
+    from affcli.plugins.entry_points import Offer
 
 KINDS: tuple[Kind, ...] = get_args(Kind)
 
@@ -62,7 +66,7 @@ REMEDY = "install what made the record"
 
 @cache
 def parts(kind: Kind) -> Mapping[str, Part]:
-    """Return the parts of a kind by name, in the order in which their files name them."""
+    """Return affcli's own parts of a kind by name, in the order in which their files name them."""
     named: dict[str, Part] = {}
     for module in chain.from_iterable(map(_modules, ROOMS[kind])):
         for found in getattr(module, "PARTS", ()):
@@ -71,14 +75,55 @@ def parts(kind: Kind) -> Mapping[str, Part]:
     return named
 
 
+def of_packages(kind: Kind) -> "Iterator[tuple[Offer, Part | PartFailedError]]":
+    """Yield the parts of a kind that packages bring, each with what offers it; or why it cannot be
+    used.
+    """
+    from affcli.plugins.parts import everything
+
+    for offer, found in everything(kind):
+        taken = offer.name in parts(kind)
+        yield offer, offer.refused("affcli has one of that name, which is used") if taken else found
+
+
 def part(kind: Kind, name: str) -> Part:
     """Return a part by name.
 
     Raises:
         UsageError: there is no such part; the message gives the nearest names.
     """
-    known = parts(kind)
-    return known[one_of(kind.removesuffix("s"), name, known, f" (affcli list {kind})")]
+    found = _found(kind, name)
+    if found is None:
+        one_of(kind.removesuffix("s"), name, known(kind, name), f" (affcli list {kind})")
+        raise LookupError(name)  # uninstalled this very moment
+    return found
+
+
+def _found(kind: Kind, name: str) -> Part | None:
+    """Return a part by name, one of ours or else of another package; None when there is none.
+
+    Raises:
+        BadInputError: several packages have it.
+        PartFailedError: that of a package cannot be loaded.
+    """
+    own = parts(kind).get(name)
+    if own is not None:
+        return own
+    from affcli.plugins.parts import find
+
+    return find(kind, name)
+
+
+def known(kind: Kind, name: str) -> list[str]:
+    """Return the names of parts of a kind: those of packages too, where the one asked for is none
+    of ours.
+    """
+    own = parts(kind)
+    if name in own:
+        return list(own)
+    from affcli.plugins.parts import names
+
+    return list(dict.fromkeys([*own, *names(kind)]))
 
 
 def component(kind: Kind, text: str) -> Component:
@@ -193,26 +238,30 @@ def explorer(chosen: Component, setting: "Setting", settings: "Settings") -> "Ex
 
 def world(chosen: Component, settings: "Settings") -> "World":
     """Return the world that a component names, with all sets of tasks that there are."""
-    return _built("worlds", chosen)(settings, _TaskSets())  # type: ignore[no-any-return]
+    return _built("worlds", chosen)(settings, TaskSets())  # type: ignore[no-any-return]
 
 
-class _TaskSets(Mapping[str, Callable[..., Any]]):
-    """What makes the tasks of each set that there is now, by the text of its component."""
-
-    def __init__(self) -> None:
-        self._parts = dict(parts("tasks"))
+class TaskSets(Mapping[str, Callable[..., Any]]):
+    """What makes the tasks of each set that there is now, by the text of its component; those of
+    other packages are not counted.
+    """
 
     def __getitem__(self, text: str) -> Callable[..., Any]:
         """Return what builds a set with the parameters that the text gives; KeyError for none."""
-        chosen = Component.parse(text)
-        found = self._parts[chosen.name]
+        try:
+            chosen = Component.parse(text)
+        except BadInputError as error:
+            raise KeyError(text) from error
+        found = _found("tasks", chosen.name)
+        if found is None:
+            raise KeyError(text)
         return partial(found.build, **found.values(chosen))
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._parts)
+        return iter(parts("tasks"))
 
     def __len__(self) -> int:
-        return len(self._parts)
+        return len(parts("tasks"))
 
 
 def recorded(kind: Kind, chosen: Component) -> Part:
@@ -220,8 +269,9 @@ def recorded(kind: Kind, chosen: Component) -> Part:
 
     Raises:
         BadInputError: this affcli has no such part.
+        PartFailedError: it is of a package, and cannot be loaded.
     """
-    found = parts(kind).get(chosen.name)
+    found = _found(kind, chosen.name)
     if found is None:
         raise BadInputError(f"{_lacking(kind, chosen)} no such part; {REMEDY}")
     return found
@@ -237,12 +287,28 @@ def _named(kind: Kind, text: str) -> tuple[Part, dict[str, Value]]:
     # What is no name either is told the names that there are.
     given = Component.parse(text) if {":", "@"} & set(text) else Component(text)
     chosen = part(kind, given.name)
-    if given.version not in (1, chosen.version):
+    if given.version not in (1, chosen.version) or given.package not in ("", chosen.package):
         raise BadInputError(
-            f"{one_line(text, 60)}: this affcli has version {chosen.version} of {chosen.name}; "
-            "leave the version out"
+            f"{one_line(text, 60)}: this affcli has {_version(chosen)} of {chosen.name}; leave the "
+            "version out"
         )
     return chosen, dict(given.params)
+
+
+def _version(found: Part) -> str:
+    """Return in words which version of a part is here."""
+    own = f"version {found.version}"
+    return f"{own}, from {found.package}," if found.package else own
+
+
+def present(kind: Kind, chosen: Component) -> Component:
+    """Return a component in the version that is here.
+
+    Raises:
+        BadInputError, PartFailedError: as `recorded`.
+    """
+    found = recorded(kind, chosen)
+    return replace(chosen, version=found.version, package=found.package)
 
 
 def _lacking(kind: Kind, chosen: Component) -> str:
@@ -256,8 +322,8 @@ def _built(kind: Kind, chosen: Component) -> Callable[..., Any]:
         BadInputError: this affcli has no such part, or has it in another version.
     """
     found = recorded(kind, chosen)
-    if found.version != chosen.version:
-        raise BadInputError(f"{_lacking(kind, chosen)} version {found.version} of it; {REMEDY}")
+    if (found.version, found.package) != (chosen.version, chosen.package):
+        raise BadInputError(f"{_lacking(kind, chosen)} {_version(found)} of it; {REMEDY}")
     values = found.values(chosen)
 
     def build(*given: Any) -> Any:

@@ -51,6 +51,22 @@ def tool_of_tables(tables: Mapping[str, Any], source: str) -> Tool:
         raise BadInputError(f"{source}: {error}") from error
 
 
+def require_sound(tool: Tool) -> None:
+    """Make sure that a tool which somebody else made is as one of a file would be.
+
+    Raises:
+        BadInputError: a name, a colour or an outline that cannot be.
+    """
+    checked_name(tool.name, "name")
+    _color(list(tool.color))
+    if not tool.parts or sum(len(part.outline.vertices) for part in tool.parts) > MOST_CORNERS:
+        raise BadInputError(f"no parts, or more than {MOST_CORNERS} corners")
+    for part in tool.parts:
+        corners = _corners([list(corner) for corner in part.outline.vertices], part.name)
+        if len(_cut(checked_name(part.name, "part"), corners, part.name)) > 1:
+            raise BadInputError(f"{part.name}: it bends inwards")
+
+
 def _tool(tables: Mapping[str, Any]) -> Tool:
     """Return the tool that tables describe; the message says at which place something is wrong."""
     for table in tables:

@@ -126,7 +126,7 @@ class Overview:
         failures: how often each kind of failure occurred in these sessions.
         trials: all trials of these sessions that count.
         reproductions: the finished ones, oldest first.
-        invalid: how many trials of these sessions count for nothing: their simulation failed.
+        invalid: how many trials of these sessions count for nothing: see `Outcome`.
         experiments: those that have robots, oldest first: they are reported by other commands.
     """
 

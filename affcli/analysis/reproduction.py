@@ -48,7 +48,7 @@ class Reproduction:
         failures: how often each kind of failure occurred, over all trials that count.
         trials: how many they are.
         tries_on_lost: tries on lost affordances with broken tools, over all of them.
-        invalid: how many trials count for nothing: their simulation failed.
+        invalid: how many trials count for nothing: see `Outcome`.
         failed: the robots that could not live.
     """
 
@@ -127,7 +127,7 @@ class Failures(NamedTuple):
     Args:
         kinds: how often each kind of failure occurred, the commonest first.
         trials: how many trials count, the solved ones included.
-        invalid: how many count for nothing: their simulation failed.
+        invalid: how many count for nothing: see `Outcome`.
     """
 
     kinds: Mapping[str, int]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from affcli import lab, registry
-from affcli.cli.database import opened, say_trials, tool_or_default
+from affcli.cli.database import opened, say_failures, say_trials, tool_or_default
 from affcli.cli.options import (
     DEFAULT_BROKEN,
     DEFAULT_PLANNER,
@@ -73,6 +73,7 @@ def break_tool(
         results=lambda: [{"run": used.id, "trials": numbers, **broken_json(used, trials)}],
         tables=lambda: broken_tables(used, trials),
     )
+    say_failures(zip(numbers, (trial.end for trial in trials), strict=True))
     tried_in_vain = [
         number
         for number, trial in zip(numbers, trials, strict=True)

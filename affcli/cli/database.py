@@ -3,7 +3,7 @@
 SQLAlchemy loads when the database is opened: a command's help does without.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -11,7 +11,8 @@ from affcli import store
 from affcli.cli.options import DEFAULT_TOOL
 from affcli.cli.terminal import say
 from affcli.core.records import FailedRobot
-from affcli.errors import BadInputError
+from affcli.core.trial import TrialEnd
+from affcli.errors import BadInputError, one_line
 from affcli.lab.suggesting import with_database
 
 MOST_NAMED = 10
@@ -56,6 +57,13 @@ def say_failed(failed: Sequence[FailedRobot]) -> int:
     more = f" and {len(failed) - MOST_NAMED} more" if len(failed) > MOST_NAMED else ""
     say(f"failed: robot {names}{more}; the same command tries again")
     return BadInputError.exit_code
+
+
+def say_failures(ends: Iterable[tuple[int, TrialEnd]]) -> None:
+    """Say of trials that a part of another package ended which did, and how."""
+    for number, end in ends:
+        if end.failure:
+            say(f"trial {number} counts for nothing: {one_line(end.failure, 500)}")
 
 
 def say_trials(numbers: Sequence[int], worth_seeing: int, database: Path) -> None:

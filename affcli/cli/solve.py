@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from affcli import lab
-from affcli.cli.database import opened, say_trials
+from affcli.cli.database import opened, say_failures, say_trials
 from affcli.cli.options import (
     DEFAULT_PLANNER,
     DEFAULT_TASKS,
@@ -91,6 +91,7 @@ def solve(
             else tasks_table([one.whole for one in trials], used)
         ],
     )
+    say_failures((one.id, one.end) for one in trials)
     numbers = [one.id for one in trials]
     say_trials(numbers, numbers[-1], database)
     return 0 if start == ALL_STARTS or all(one.solved for one in trials) else 1

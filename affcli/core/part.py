@@ -28,6 +28,7 @@ class Part:
         params: its parameters by name.
         version: raised when the same parameters give other results.
         told: it is told what no robot sees, and stands beside robots to be compared with them.
+        package: that it comes from, as in `Component`; empty for parts of affcli itself.
     """
 
     kind: Kind
@@ -38,6 +39,7 @@ class Part:
     params: Mapping[str, Setting] = field(default_factory=dict)
     version: int = 1
     told: bool = False
+    package: str = ""
 
     def checked(self, given: Mapping[str, Value]) -> dict[str, Value]:
         """Return parameters that someone gave, each in the one form that equal values have.
@@ -66,7 +68,7 @@ class Part:
             for name, value in self.checked(given).items()
             if value != self.params[name].default
         }
-        return Component.of(self.name, differing, self.version)
+        return Component.of(self.name, differing, self.version, self.package)
 
     def values(self, component: Component) -> dict[str, Value]:
         """Return all parameters by name: those of the component, else the defaults."""

@@ -26,7 +26,7 @@ class Outcome(StrEnum):
     ATTRACTOR_OUT_OF_REACH = "attractor out of reach"
     STEP_LIMIT = "step limit"
     INVALID = "invalid"
-    """The simulation diverged; the trial counts for nothing."""
+    """The simulation diverged, or a part of another package failed: it counts for nothing."""
 
 
 def is_counted(outcome: Outcome | None) -> bool:
@@ -110,13 +110,20 @@ class TrialEnd:
         outcome: how it ended.
         steps: how many steps were taken.
         clock: robot seconds it took.
-        last_reasons: what the planner went by at the query that found no row, else None.
+        last_reasons: what the planner went by at the query that found no row; of an invalid trial
+            which part of another package failed, and how; else None.
     """
 
     outcome: Outcome
     steps: int
     clock: float
     last_reasons: Reasons | None = None
+
+    @property
+    def failure(self) -> str:
+        """Which part of another package ended the trial, and how; empty where none did."""
+        failed = self.outcome is Outcome.INVALID and self.last_reasons
+        return failed[0].name if failed else ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from affcli.lab import cluster as cluster
     from affcli.lab import conditions as conditions
     from affcli.lab import conducting as conducting
+    from affcli.lab import conforming as conforming
     from affcli.lab import courses as courses
     from affcli.lab import definition as definition
     from affcli.lab import effects as effects

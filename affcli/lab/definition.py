@@ -292,7 +292,7 @@ def _parts(key: str, value: object, own_parts: OwnParts) -> str | list[str]:
             found.append(name)
             continue
         if key == "tasks" and not {":", "@"} & set(text):
-            one_of("tasks", text, [*registry.parts("tasks"), ADAPTATION])
+            one_of("tasks", text, [*registry.known("tasks", text), ADAPTATION])
         own = text if text == ADAPTATION else registry.component(NAMED[key], text)
         # What of a binding is left out, the sizes of the tools decide: it stays as it is written.
         found.append(text if key == "binding" else str(own))

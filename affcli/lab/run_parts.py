@@ -158,8 +158,7 @@ def world_of(learned: LearningSpec, *, again: bool = False) -> World:
     hold_of(learned.binding)
     if again:
         require_world_version(made)
-    here = replace(made, version=registry.recorded("worlds", made).version)
-    return registry.world(here, settings)
+    return registry.world(registry.present("worlds", made), settings)
 
 
 def require_robot(learned: LearningSpec) -> None:
@@ -209,10 +208,15 @@ def require_world_version(made: Component) -> None:
     Raises:
         BadInputError: naming both versions; or this affcli has no such world.
     """
-    now = registry.recorded("worlds", made).version
-    if now != made.version:
+    now = registry.present("worlds", made)
+    if now.version != made.version:
         raise BadInputError(
-            f"made in version {made.version} of the world {made.name}, this affcli has {now}: it "
+            f"made in version {made.version} of the world {made.name}, this affcli has "
+            f"{now.version}: it cannot be done again to the bit; {registry.REMEDY}"
+        )
+    if now.package != made.package:
+        raise BadInputError(
+            f"made in the world {made.name} of {made.package}, here is that of {now.package}: it "
             f"cannot be done again to the bit; {registry.REMEDY}"
         )
 

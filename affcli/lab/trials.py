@@ -108,7 +108,8 @@ def trial_specs(
         planner: how it chooses rows.
         world: where they take place.
     """
-    place = replace(learned.world, version=world.version)
+    here = registry.present("worlds", learned.world)
+    place = replace(here, version=world.version)
     robot, counters = learned.robot, Counters.AS_LEARNED
     return [
         TrialSpec(

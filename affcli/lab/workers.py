@@ -7,7 +7,6 @@ no room for, and threads that may wait for ever when a process cannot be started
 import gc
 import os
 import pickle
-import subprocess
 import sys
 import traceback
 from collections import Counter
@@ -15,24 +14,15 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
-from multiprocessing.connection import Connection, Pipe, wait
-from queue import SimpleQueue
-from threading import Thread
+from multiprocessing.connection import Connection, wait
 from typing import Any, Protocol, TypeVar
 
+from affcli.child import GONE, Child, received
 from affcli.errors import WorkersDiedError
 
-BEGIN = (
-    "import sys; from multiprocessing.connection import Connection; "
-    "pipe = Connection(int(sys.argv[1])); sys.path[:] = pipe.recv(); "
-    "from affcli.lab.workers import serve; serve(pipe)"
-)
-"""What a worker runs: it finds affcli where this process found it."""
 SPARE_FILES = 8
 """Files that this process must be able to open beside its pipes, for its database for one."""
 DIED = "its worker process died ten times, perhaps memory ran out; give fewer --workers"
-GONE = (EOFError, ConnectionError)
-"""What a pipe raises when the process at its other end has ended."""
 
 TRIES, LOSSES = 3, 10
 """How often a task is tried that raises, and how often one whose worker dies, before it failed."""
@@ -201,21 +191,12 @@ def start_fault(workers: int) -> str:
         _end(pool)
 
 
-class _Worker:
+class _Worker(Child):
     """A process that does tasks, one at a time, until its pipe is closed."""
 
     def __init__(self) -> None:
+        super().__init__("affcli.lab.workers:serve")
         self.task: int | None = None
-        self.pipe, theirs = Pipe()
-        with theirs:
-            self.process = subprocess.Popen(  # noqa: S603  # Python itself
-                [sys.executable, "-c", BEGIN, str(theirs.fileno())],
-                pass_fds=[theirs.fileno()],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
-                process_group=0,  # ctrl-C on the terminal reaches the parent alone
-            )
 
 
 def _start(pool: list[_Worker], count: int, work: Callable[[Any], Any]) -> str:
@@ -342,12 +323,11 @@ def serve(pipe: "Connection[Any, Any]") -> None:
     Python does by default costs 7 % of the time.
     """
     gc.set_threshold(100_000, 20, 20)
-    work = pipe.recv()
-    tasks: SimpleQueue[Any] = SimpleQueue()
-    Thread(target=_receive, args=(pipe, tasks), daemon=True).start()
+    received_next = received(pipe)
+    work = received_next()
     pipe.send("ready")
     while True:
-        outcome = attempt(work, tasks.get())
+        outcome = attempt(work, received_next())
         try:
             pipe.send(outcome)
         except Exception as error:  # noqa: BLE001  # an answer that no pipe can carry
@@ -370,12 +350,3 @@ def _as_sent(error: Exception) -> Exception:
     except Exception:  # noqa: BLE001  # whatever its class does
         return RuntimeError(error.__notes__[-1])
     return error
-
-
-def _receive(pipe: "Connection[Any, Any]", tasks: "SimpleQueue[Any]") -> None:
-    """Hand on the tasks that come; end with the parent, which may be killed at any moment."""
-    try:
-        while True:
-            tasks.put(pipe.recv())
-    except GONE:
-        os._exit(1)

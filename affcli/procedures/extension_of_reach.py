@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.behavior import BehaviorCall
-from affcli.core.choice import Situation
+from affcli.core.choice import Reason, Situation
 from affcli.core.goal import Goal
 from affcli.core.observation import Observation
 from affcli.core.ports import Experimenter, Planner, Robot, Sensor, Sliding
 from affcli.core.setting import setting
 from affcli.core.trial import Outcome, StepRecord, TrialEnd
-from affcli.errors import SimulationDivergedError
+from affcli.errors import PartFailedError, SimulationDivergedError
 from affcli.procedures.attempt import attempt
 
 
@@ -69,6 +69,10 @@ def extension_of_reach(
         except SimulationDivergedError:
             # Kept as a trial of its own kind, which counts neither as solved nor as failed.
             return TrialEnd(Outcome.INVALID, number - 1, robot.clock)
+        except PartFailedError as error:
+            # So is that of a planner or a world of another package, with what it did.
+            why = (Reason(str(error)),)
+            return TrialEnd(Outcome.INVALID, number - 1, robot.clock, why)
         if isinstance(step, TrialEnd):
             return step
         yield step

@@ -3,7 +3,8 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from affcli.core.identity import shown
+from affcli import __version__
+from affcli.core.identity import package_text, shown
 from affcli.core.part import Kind, Part
 from affcli.report.sheet import Sheet
 
@@ -14,9 +15,10 @@ Registered = Mapping[Kind, Mapping[str, Part]]
 def parts_tables(registered: Registered) -> Iterator[Sheet]:
     """Yield for each kind a table of its parts, and one of their parameters if they have any."""
     for kind, parts in registered.items():
-        known = Sheet((kind, "what it is", "source"), left=(kind, "what it is", "source"))
+        heads = (kind, "what it is", "source", "package")
+        known = Sheet(heads, left=heads)
         for name, part in parts.items():
-            known.add(name, part.summary, part.source)
+            known.add(name, part.summary, part.source, part.package or "affcli")
         yield known
         left = ("parameter of", "name", "unit", "limits", "meaning")
         params = Sheet((*left[:2], "default", *left[2:]), left=left)
@@ -36,6 +38,7 @@ def parts_json(registered: Registered) -> list[dict[str, Any]]:
             "version": part.version,
             "summary": part.summary,
             "source": part.source,
+            "package": part.package or package_text("affcli", __version__),
             "parameters": [
                 {
                     "name": key,

@@ -218,6 +218,8 @@ def failures_table(failures: Mapping[str, int], trials: int, invalid: int = 0) -
         table.add(kind, str(count), f"{100 * count / trials:.1f} %")
     notes = [] if failures else [f"no failures in {many(trials, 'trial')}"]
     if invalid:
-        notes.append(f"{many(invalid, 'invalid trial')} left out: the simulation failed")
+        notes.append(
+            f"{many(invalid, 'invalid trial')} left out: the simulation or a plug-in failed"
+        )
     table.caption = "; ".join(notes)
     return table

@@ -15,6 +15,7 @@ from affcli.core.goal import Goal
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import TrialSpec
 from affcli.core.trial import Outcome, StepRecord, TrialEnd, is_counted
+from affcli.errors import one_line
 from affcli.report.sheet import Sheet
 from affcli.report.words import (
     call_words,
@@ -45,7 +46,9 @@ def explain_trial(spec: TrialSpec, end: TrialEnd, steps: Steps) -> RenderableTyp
             _indented(2, f"step {step.number}: row {row}, {call_words(step.row.exploratory)}")
         )
         lines += [_indented(4, line) for line in step_lines(step, spec.task.goal)]
-    if end.last_reasons is not None:
+    if end.failure:
+        lines.append(_indented(2, one_line(end.failure, 500)))
+    elif end.last_reasons is not None:
         lines.append(_indented(2, reasons_words(end.last_reasons, chosen=False)))
     return Group(*lines, "")
 

@@ -16,4 +16,12 @@ from pkgutil import iter_modules
 
 import pytest
 
-pytest.register_assert_rewrite(*(f"{__name__}.{suite.name}" for suite in iter_modules(__path__)))
+
+def rewrite_suites() -> None:
+    """Have pytest rewrite the asserts of the suites, so that they say what they compared."""
+    pytest.register_assert_rewrite(
+        *(f"{__name__}.{suite.name}" for suite in iter_modules(__path__))
+    )
+
+
+rewrite_suites()

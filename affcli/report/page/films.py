@@ -56,7 +56,8 @@ def trial_data(replay: Replay, run: LearningRunInfo, world: int) -> dict[str, An
     scenes = [scene for one in replay.steps for scene in one.scenes] or [replay.opening]
     spec, goal, end = replay.spec, replay.opening.goal, replay.end
     tools = list(dict.fromkeys(scene.tool for scene in scenes))
-    left = None if end is None else end.last_reasons
+    failure = "" if end is None else end.failure
+    left = None if end is None or failure else end.last_reasons
     return {
         "id": replay.trial_id,
         "world": world,
@@ -64,6 +65,7 @@ def trial_data(replay: Replay, run: LearningRunInfo, world: int) -> dict[str, An
         "region": None if goal is None else outline(goal.outline().vertices),
         "outcome": "interrupted" if end is None else end.outcome.value,
         "left": None if left is None else [reason_words(reason) for reason in left],
+        "failure": failure or None,
         "equal": not replay.differences,
         "steps": [_step(one) for one in replay.steps],
         "color": hex_color(run.spec.held.color),

@@ -231,7 +231,7 @@
   }
 
   function ending() {
-    const rows = trial.left ? `; rows left: ${trial.left.join(", ")}` : "";
+    const rows = trial.failure ? `; ${trial.failure}` : trial.left ? `; rows left: ${trial.left.join(", ")}` : "";
     return html("p", `The trial ended: ${trial.outcome}${rows}.`);
   }
 
