@@ -15,7 +15,7 @@ from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
-from affcli.core.behavior import BehaviorCall, Repertoire
+from affcli.core.behavior import BehaviorCall, ExploratoryBehavior, Repertoire
 from affcli.core.geometry import Point, near_any
 from affcli.core.identity import Component
 from affcli.core.names import one_of
@@ -27,6 +27,7 @@ from affcli.errors import BadInputError, UsageError, one_line
 if TYPE_CHECKING:
     from affcli.config import Settings
     from affcli.core.ports import Explorer, Planner
+    from affcli.core.task import Task
     from affcli.core.workspace import ToolGeometry
     from affcli.core.world import Setting, World
     from affcli.errors import PartFailedError
@@ -146,19 +147,63 @@ def binding(text: str, geometry: "ToolGeometry") -> BehaviorCall:
     return made
 
 
-def repertoire(texts: Sequence[str]) -> Repertoire:
+def repertoire(parts_of_it: Sequence[str | ExploratoryBehavior]) -> Repertoire:
     """Return the exploratory behaviors of several parts, in order.
 
+    Args:
+        parts_of_it: each by its name, by its file, or by value.
+
     Raises:
-        UsageError: a behavior comes twice.
+        UsageError: a behavior comes twice, or as `component`.
+        BadInputError: as `component`, or a file is not as it must be.
     """
-    chosen: dict[BehaviorCall, Any] = {}
-    for text in texts:
-        for behavior in _built("behaviors", component("behaviors", text))():
+    chosen: dict[BehaviorCall, ExploratoryBehavior] = {}
+    for one in parts_of_it:
+        for behavior in _behaviors(one):
             if behavior.call in chosen:
-                raise UsageError(f"--repertoire {one_line(text, 60)}: {behavior.call} comes twice")
+                said = one_line(one if isinstance(one, str) else one.call, 60)
+                raise UsageError(f"--repertoire {said}: {behavior.call} comes twice")
             chosen[behavior.call] = behavior
     return tuple(chosen.values())
+
+
+def _behaviors(one: str | ExploratoryBehavior) -> Repertoire:
+    """Return the behaviors of a part of a repertoire."""
+    if isinstance(one, ExploratoryBehavior):
+        return (one,)
+    if not names_file(one):
+        made: Repertoire = _built("behaviors", component("behaviors", one))()
+        return made
+    from affcli.own_files.behaviors import behavior_from_file
+
+    own = behavior_from_file(Path(one))
+    require_own_behavior(own, f"behavior {one_line(one)}")
+    return (own,)
+
+
+def require_own_behavior(own: ExploratoryBehavior, source: str) -> None:
+    """Make sure that a person's own behavior has no name of ours: BadInputError."""
+    if own.call.name.replace(" ", "-") in parts("behaviors"):
+        raise BadInputError(f"{source}: there is a {own.call.name}; give it another name")
+
+
+def own_tasks(path: Path) -> "tuple[Task, ...]":
+    """Return a person's own tasks, from their file.
+
+    Raises:
+        BadInputError: the file is not as it must be, or they have a name of ours.
+    """
+    from affcli.own_files.tasks import tasks_from_file
+
+    made = tasks_from_file(path)
+    require_own_tasks(made, f"task {one_line(path)}")
+    return made
+
+
+def require_own_tasks(own: "tuple[Task, ...]", source: str) -> None:
+    """Make sure that a person's own tasks have no name of ours: BadInputError."""
+    if own[0].task_set in parts("tasks"):
+        raise BadInputError(f"{source}: there are tasks {own[0].task_set}; give them another name")
 
 
 def tool(text: str, geometry: "ToolGeometry") -> Tool:
@@ -183,7 +228,7 @@ def own_tool(path: Path, geometry: "ToolGeometry") -> Tool:
     Raises:
         BadInputError: the file is not as it must be, or `require_own_tool`.
     """
-    from affcli.tool_files import tool_from_file  # few give a file
+    from affcli.own_files.tools import tool_from_file  # few give a file
 
     made = tool_from_file(path)
     require_own_tool(made, geometry, f"tool {one_line(path)}")
@@ -221,7 +266,7 @@ def require_own_tool(made: Tool, geometry: "ToolGeometry", source: str) -> None:
 
 
 def names_file(text: str) -> bool:
-    """Tell whether what stands for a tool is a file, and no name."""
+    """Tell whether what stands for a tool, a behavior or tasks is a file, and no name."""
     return text.endswith(".toml")
 
 

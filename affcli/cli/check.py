@@ -3,7 +3,7 @@ whether a part keeps the contract of its kind.
 """
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -12,12 +12,17 @@ from affcli.cli.files import require_new, save
 from affcli.cli.options import FIGURE_ENDINGS, PART, AsJson, Changes, Config, Force
 from affcli.cli.terminal import progress, say, show_either
 from affcli.config import Settings, load_settings
+from affcli.core.behavior import ExploratoryBehavior
+from affcli.core.geometry import Pose
 from affcli.core.names import one_of
 from affcli.core.part import Kind
+from affcli.core.task import Task
+from affcli.core.tool import Tool
 from affcli.errors import UsageError, one_line
 from affcli.lab.drawing import require_figures
 from affcli.report import figures
 from affcli.report.checked import checked_json, checked_table, part_json, part_table
+from affcli.simulation.arm import reach_at
 
 
 def checked_kind(text: str) -> Kind:
@@ -30,7 +35,7 @@ def check(
     file: Annotated[
         Path | None,
         typer.Argument(
-            help="A TOML file: a tool, a map of a log, an experiment, or settings.",
+            help="A tool, a behavior, tasks, a map of a log, an experiment, or settings, in TOML.",
             metavar="FILE.toml",
             readable=False,
         ),
@@ -51,7 +56,7 @@ def check(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", help="Draw a tool: *.png, *.svg or *.pdf.", metavar="FILE"),
+        typer.Option("--out", help="Draw what it is: *.png, *.svg or *.pdf.", metavar="FILE"),
     ] = None,
     force: Force = False,
     config: Config = None,
@@ -60,7 +65,8 @@ def check(
 ) -> int:
     """Say what a file of yours is, or what is wrong in it and where.
 
-    Of a tool also whether babbling and a camera can do with it; --out draws it. With --part and
+    Of a tool also whether babbling and a camera can do with it; --out draws tools, behaviors and
+    tasks. With --part and
     --name: whether a part keeps the contract of its kind (exit code 1 if it does not).
     """
     if (file is None) is (kind is None) or (kind is None) is not (name is None):
@@ -91,6 +97,22 @@ def _check_part(kind: Kind, text: str, *, as_json: bool) -> int:
     return 1 if any(what == "failed" for _, what, _ in tests) else 0
 
 
+def _figure(found: "lab.checking.Checked", file: Path, settings: Settings) -> Any:
+    """Return a drawing of what a file describes."""
+    place = settings.workspace
+    in_the_hand = registry.tool(lab.checking.TRIED_WITH, place.tools)
+    match found.drawn:
+        case Tool() as tool:
+            return figures.tools.tools_figure([tool], None, place.puck.radius)
+        case ExploratoryBehavior(_, motion):
+            start = Pose(*place.wrist_start)
+            return figures.behavior.behavior_figure(motion, in_the_hand, start, place.table)
+        case (Task(), *_) as tasks:
+            reach = reach_at(place.arm, place.arm.flange_height)
+            return figures.workspace.workspace_figure(place, in_the_hand, reach, tasks)
+    raise UsageError(f"--out draws tools, behaviors and tasks; {one_line(file)} is {found.kind}")
+
+
 def _check_file(
     file: Path, out: Path | None, settings: Settings, *, force: bool, as_json: bool
 ) -> int:
@@ -100,10 +122,7 @@ def _check_file(
         require_figures()
     found = lab.checking.checked(file, settings)
     if out is not None:
-        if found.tool is None:
-            raise UsageError(f"--out draws tools; {one_line(file)} is of {found.kind}")
-        radius = settings.workspace.puck.radius
-        drawn = figures.tools.tools_figure([found.tool], None, radius)
+        drawn = _figure(found, file, settings)
         save(out, figures.canvas.encoded(drawn, out.suffix, title="", caption="", dpi=300))
         say(f"{found.name}, to scale: {one_line(out)}")
     said = (found.kind, found.name, found.facts)

@@ -1,61 +1,104 @@
-"""``affcli new``: a file to begin with."""
+"""``affcli new``: a file, or a small package, to begin with."""
 
+import json
+import re
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, cast
 
 import typer
 
-from affcli import lab
+from affcli import lab, registry
+from affcli.cli.beginnings import FILES, MODULES, PROJECT
 from affcli.cli.files import require_new, save
 from affcli.cli.options import Force
 from affcli.cli.terminal import say
 from affcli.config import load_settings
-from affcli.errors import one_line
-from affcli.tool_files import checked_name
+from affcli.core.identity import Component
+from affcli.core.part import Kind
+from affcli.errors import BadInputError, one_line
+from affcli.own_files.words import checked_name
 
-TOOL = """\
-# A tool of your own. Inches; x to the right, y along the handle, away from the robot.
-# The robot holds it at x = 0, 1 in above its lower end (--binding grasp:grasp_point=3: at 3 in).
-#   affcli check {file} --out {stem}.png     draws it, or says what is wrong
-#   affcli learn --tool ./{file}             an hour of babbling with it
-#   affcli solve --goal 1 --tool "{name}"
-#   affcli break-tool --tool "{name}" --loses "left tine"
-
-[tool]
-name = "{name}"
-color = [110, 230, 200]     # red, green, blue; unlike the other tools', by which robots know them
-
-[[part]]                    # a tool breaks by the names of its parts
-name = "handle"
-outline = [[-0.4, 0], [0.4, 0], [0.4, 14], [-0.4, 14]]
-
-[[part]]                    # any polygon that does not cross itself; it may bend inwards
-name = "bar"
-outline = [[-5, 13.2], [5, 13.2], [5, 14], [-5, 14]]
-
-[[part]]
-name = "left tine"
-outline = [[-5, 9], [-4.2, 9], [-4.2, 13.2], [-5, 13.2]]
-
-[[part]]
-name = "right tine"
-outline = [[4.2, 9], [5, 9], [5, 13.2], [4.2, 13.2]]
-"""
+Name = Annotated[str, typer.Argument(help="What it is to be called.", metavar="NAME")]
+OutFile = Annotated[
+    Path | None, typer.Option("--out", help="The file; NAME.toml if not given.", metavar="FILE")
+]
+OutFolder = Annotated[
+    Path | None, typer.Option("--out", help="The folder; NAME if not given.", metavar="FOLDER")
+]
 
 
-def tool(
-    name: Annotated[str, typer.Argument(help="What it is to be called.", metavar="NAME")],
-    *,
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", help="The file; NAME.toml if not given.", metavar="FILE"),
-    ] = None,
-    force: Force = False,
-) -> None:
+def tool(name: Name, *, out: OutFile = None, force: Force = False) -> None:
     """Write a tool to begin with: a rake, with what to change said beside it."""
+    _write_file("tool", name, out, force=force)
+
+
+def behavior(name: Name, *, out: OutFile = None, force: Force = False) -> None:
+    """Write a behavior to begin with: what the wrist does, piece after piece."""
+    _write_file("behavior", name, out, force=force)
+
+
+def task(name: Name, *, out: OutFile = None, force: Force = False) -> None:
+    """Write tasks to begin with: goals, and starts of the attractor."""
+    _write_file("task", name, out, force=force)
+
+
+def planner(name: Name, *, out: OutFolder = None, force: Force = False) -> None:
+    """Write a package with a planner to begin with: how to choose a row."""
+    _write_package("planner", name, out, force=force)
+
+
+def explorer(name: Name, *, out: OutFolder = None, force: Force = False) -> None:
+    """Write a package with an explorer to begin with: what to try next."""
+    _write_package("explorer", name, out, force=force)
+
+
+def world(name: Name, *, out: OutFolder = None, force: Force = False) -> None:
+    """Write a package with a world to begin with: the table, changed."""
+    _write_package("world", name, out, force=force)
+
+
+def _write_file(kind: str, name: str, out: Path | None, *, force: bool) -> None:
+    """Write a file of a kind, which is as it must be but where its name is another's."""
     called = checked_name(name, "NAME")
     path = out or Path(f"{called.replace(' ', '-')}.toml")
     require_new(path, force=force, endings=(".toml",))
-    save(path, TOOL.format(name=called, file=path.name, stem=path.stem).encode())
+    words = {"quoted": json.dumps(called, ensure_ascii=False), "file": path.name, "stem": path.stem}
+    save(path, FILES[kind].format(**words).encode())
     lab.checking.checked(path, load_settings(None, ()))
-    say(f"a tool to begin with: {one_line(path)}; see: affcli check {one_line(path)}")
+    say(f"a {kind} to begin with: {one_line(path)}; see: affcli check {one_line(path)}")
+
+
+def _write_package(kind: str, name: str, out: Path | None, *, force: bool) -> None:
+    """Write a package that brings a part of a kind."""
+    _require_part_name(cast(Kind, f"{kind}s"), name)
+    folder = out or Path(name)
+    package = f"affcli-{re.sub(r'[^a-z0-9]+', '-', name).strip('-')}"
+    module = package.replace("-", "_")
+    words = {"kind": kind, "name": name, "package": package, "module": module}
+    texts = {"pyproject.toml": PROJECT, f"{module}.py": MODULES[kind]}
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise BadInputError(
+            f"{one_line(folder)}: {error.strerror}; name another folder with --out"
+        ) from error
+    for file in texts:
+        require_new(folder / file, force=force)
+    for file, text in texts.items():
+        save(folder / file, text.format(folder=folder.name, **words).encode())
+    where = one_line(folder)
+    one = "an" if kind[0] in "aeiou" else "a"
+    say(f"{one} {kind} to begin with: {where}; then: pip install ./{where} && affcli list {kind}s")
+
+
+def _require_part_name(kind: Kind, name: str) -> None:
+    """Refuse a name that no part can have, or one of ours has: BadInputError."""
+    try:
+        fits = Component.parse(name) == Component(name)
+    except BadInputError:
+        fits = False
+    if not fits or len(name) > 40 or name in registry.parts(kind):
+        why = "there is one" if fits and name in registry.parts(kind) else "not a name of a part"
+        raise BadInputError(
+            f"NAME = {one_line(name, 60)}: {why}; give it 1 to 40 small letters, digits and dashes"
+        )

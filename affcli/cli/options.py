@@ -219,7 +219,7 @@ Repertoire = Annotated[
     list[str] | None,
     typer.Option(
         "--repertoire",
-        help="Exploratory behaviors; several times for several (default: paper).",
+        help="Exploratory behaviors, or a file; several times for several (default: paper).",
         metavar=PART,
         autocompletion=names_of("behaviors"),
     ),
@@ -258,7 +258,7 @@ Planner = Annotated[
 DEFAULT_PLANNER = registry.DEFAULTS["planner"]
 TaskSet = Annotated[
     str,
-    typer.Option("--task", help="The set of tasks (affcli list tasks).", metavar="NAME"),
+    typer.Option("--task", help="The set of tasks (affcli list tasks), or a file.", metavar="NAME"),
 ]
 DEFAULT_TASKS = registry.DEFAULTS["task"]
 Force = Annotated[bool, typer.Option("--force", help="Write over existing files.")]

@@ -78,6 +78,25 @@ def turned_by(motion: Motion) -> tuple[float, ...]:
     return tuple(angles)
 
 
+def poses(motion: Motion, start: Pose) -> tuple[Pose, ...]:
+    """Return where the wrist is when a motion begins and after each segment (in, rad), if nothing
+    ends it before.
+    """
+    found = [start]
+    for segment in motion:
+        x, y, angle = found[-1]
+        match segment:
+            case Slide(dx, dy):
+                found.append(Pose(x + dx, y + dy, angle))
+            case Turn(degrees):
+                found.append(Pose(x, y, angle + math.radians(degrees)))
+            case Carry(to):
+                found.append(to)
+            case Wait():
+                found.append(found[-1])
+    return tuple(found)
+
+
 def motion_json(motion: Motion) -> list[list[Any]]:
     """Return a motion as JSON types: ``[["slide", 0.0, 5.0], ["wait", 1.0]]``."""
     return [_segment_json(segment) for segment in motion]

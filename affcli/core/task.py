@@ -1,6 +1,7 @@
 """Tasks: bring the attractor from a start over a goal region (§7.1, Fig. 8)."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,3 +81,11 @@ class Task:
     goal: GoalRegion
     start_name: str
     start: Point
+
+
+def tasks_json(tasks: tuple[Task, ...]) -> list[list[Any]]:
+    """Return tasks by value as JSON types."""
+    return [
+        [t.task_set, t.goal.name, *t.goal.center, t.goal.half_width, t.start_name, *t.start]
+        for t in tasks
+    ]

@@ -1,18 +1,29 @@
 """What a person's file is, before anything is done with it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from affcli import registry
 from affcli.config import Settings, load_settings, toml_file
+from affcli.core.behavior import ExecutionStatus, ExploratoryBehavior
+from affcli.core.change_detection import MOVEMENT_THRESHOLD
+from affcli.core.geometry import Point
 from affcli.core.identity import shown
+from affcli.core.motion import motion_json
+from affcli.core.task import Task
 from affcli.core.tool import Tool, hold_of
+from affcli.core.workspace import Workspace
 from affcli.errors import BadInputError, one_line
 from affcli.lab.definition import experiment_file
-from affcli.lab.run_parts import RunParts, beyond_the_box
+from affcli.lab.run_parts import RunParts, beyond_the_box, world_of
 from affcli.logs.mapping import map_of_tables
 from affcli.perception.palette import table_palette
+from affcli.report.words import many
+
+TRIED_WITH = "t-hook"
+"""In the hand while a behavior is tried."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,16 +31,16 @@ class Checked:
     """A file that was read whole and is as it must be.
 
     Args:
-        kind: ``tool``, ``experiment``, ``map of a log`` or ``settings``.
+        kind: ``tool``, ``behavior``, ``tasks``, ``experiment``, ``map of a log`` or ``settings``.
         name: of what it describes.
         facts: what it says, in words, by what that is.
-        tool: what it describes, if that is a tool, as it is held.
+        drawn: what it describes, where that can be drawn: a tool as it is held, a behavior, tasks.
     """
 
     kind: str
     name: str
     facts: Mapping[str, str] = field(default_factory=dict)
-    tool: Tool | None = None
+    drawn: Tool | ExploratoryBehavior | tuple[Task, ...] | None = None
 
 
 def checked(path: Path, settings: Settings) -> Checked:
@@ -44,8 +55,6 @@ def checked(path: Path, settings: Settings) -> Checked:
             the file and the place in it.
     """
     tables = toml_file(path, one_line(path))
-    if "tool" in tables or "part" in tables:
-        return _tool(path, settings)
     if "log" in tables and "columns" in tables:
         return _map(path, tables)
     if "experiment" in tables:
@@ -57,6 +66,12 @@ def checked(path: Path, settings: Settings) -> Checked:
             "conditions": ", ".join(named),
         }
         return Checked("experiment", made.name, facts)
+    if {"tool", "part"} & tables.keys():
+        return _tool(path, settings)
+    if {"behavior", "segment"} & tables.keys():
+        return _behavior(path, settings)
+    if {"task", "goal", "start"} & tables.keys():
+        return _tasks(path, settings.workspace)
     differing = load_settings(path).differing()
     return Checked("settings", path.stem, {key: shown(one) for key, one in differing.items()})
 
@@ -103,3 +118,73 @@ def _seen(tool: Tool, settings: Settings) -> str:
     except BadInputError as error:
         return f"would not do: {error}"
     return "tells it from the rest by its color"
+
+
+def _behavior(path: Path, settings: Settings) -> Checked:
+    """Return what a file says of a behavior, and what comes of it from the table's centre."""
+    parts = RunParts.chosen(settings, repertoire=[str(path.absolute())])
+    (behavior,) = parts.repertoire
+    spec = parts.spec(TRIED_WITH, 0, 0, 1.0)
+    setting = world_of(spec).learning(spec)
+    setting.robot.execute(setting.binding, None)
+    tried = setting.robot.execute(behavior.call, setting.sensor.observe())
+    came = f"takes {tried.duration:.1f} s of the robot's time"
+    if tried.status is ExecutionStatus.TRUNCATED:
+        came = f"meets the edge of the arm's reach after {tried.duration:.1f} s and ends there"
+    (x, y, _), (end_x, end_y, _) = tried.wrist_start, tried.wrist_end
+    facts = {
+        "segments": "; ".join(_segment_words(*one) for one in motion_json(behavior.motion)),
+        "begun at the table's centre": came,
+        "the wrist ends": f"{end_x - x:.1f} in to the right, {end_y - y:.1f} in away",
+    }
+    return Checked("behavior", behavior.call.name, facts, behavior)
+
+
+def _segment_words(kind: str, *numbers: float) -> str:
+    """Return a segment as a file has it."""
+    return f"{kind} {', '.join(f'{one:g}' for one in numbers)}"
+
+
+def _tasks(path: Path, workspace: Workspace) -> Checked:
+    """Return what a file says of tasks, and whether the paper's tools reach their places."""
+    tasks = registry.own_tasks(path)
+    goals = {f"goal {task.goal.name}": task.goal.center for task in tasks}
+    starts = {f"start {task.start_name}": task.start for task in tasks}
+    counts = f"{many(len(goals), 'goal')}, each from {many(len(starts), 'start')}"
+    facts = {
+        "tasks": f"{len(tasks)}: {counts}",
+        "goals": _places_words(goals),
+        "starts": _places_words(starts),
+        "reach": _reach_words({**goals, **starts}, workspace),
+    }
+    return Checked("tasks", tasks[0].task_set, facts, tasks)
+
+
+def _places_words(places: Mapping[str, Point]) -> str:
+    """Return places with their names."""
+    named = {name.partition(" ")[2]: at for name, at in places.items()}
+    return "; ".join(f"{name} at ({at.x:g}, {at.y:g})" for name, at in named.items())
+
+
+def _reach_words(places: Mapping[str, Point], workspace: Workspace) -> str:
+    """Return which places lie off the table, or out of reach of all the paper's tools."""
+    from affcli.simulation.arm import reach_at
+    from affcli.simulation.reach_of_tool import touchable
+    from affcli.simulation.tools.paper import paper_tools
+
+    top, arm = workspace.table, workspace.arm
+    reach, depth = reach_at(arm, arm.flange_height), workspace.puck.radius - MOVEMENT_THRESHOLD
+    tools = paper_tools(workspace.tools).values()
+    off, far = [], []
+    for name, at in places.items():
+        if abs(at.x) > top.half_width or not top.near <= at.y <= top.far:
+            off.append(name)
+        elif not any(touchable(tool.outlines, reach, at, depth) for tool in tools):
+            far.append(name)
+    return _problems(off, far) or "each place is within reach of one of the paper's tools"
+
+
+def _problems(off: Sequence[str], far: Sequence[str]) -> str:
+    """Return in words which places cannot be used."""
+    said = ((off, "off the table"), (far, "out of reach of the paper's tools"))
+    return "; ".join(f"{what}: {', '.join(names)}" for names, what in said if names)

@@ -19,7 +19,7 @@ from affcli.core.records import ExperimentInfo, FailedRobot
 from affcli.core.specs import EXPERIMENT, Keep
 from affcli.errors import AffcliError, UsageError, one_line
 from affcli.lab.experiment import Condition, Experiment, one_robot
-from affcli.lab.own_parts import TOOLS
+from affcli.lab.own_parts import TABLES as OWN_TABLES
 from affcli.lab.versions import versions
 from affcli.lab.workers import Failed, Pool, in_order
 from affcli.store import PackedRobot, Store, open_store, pack_robot
@@ -247,8 +247,8 @@ def _changes(stored: ExperimentInfo, wanted: Experiment) -> str:
     was, now = stored.definition, wanted.definition
     if was["experiment"]["seed"] != wanted.seed:
         return f"its seed is {was['experiment']['seed']}, not {wanted.seed}"
-    if was.get(TOOLS) != now.get(TOOLS):
-        return "a file of one of its tools says otherwise now"
+    if any(was.get(table) != now.get(table) for table in OWN_TABLES):
+        return "a file that it names says otherwise now"
     old, new = ({one["name"]: one for one in form["condition"]} for form in (was, now))
     if list(old) != list(new):
         return f"its conditions are {', '.join(map(one_line, old))}"

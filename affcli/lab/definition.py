@@ -3,7 +3,7 @@
 ``[experiment]`` names it, ``[base]`` is what all conditions share, each ``[[condition]]`` is the
 base but for what it says, and ``[sweep]`` holds lists of values: every point of their grid is a
 condition. What the store keeps is such a file too, with base and sweep written out everywhere, and
-what the files of tools say under ``[[tool]]``.
+what the files of tools, behaviors and tasks say under ``[[tool]]``, ``[[behavior]]``, ``[[task]]``.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -30,11 +30,12 @@ from affcli.core.part import Kind
 from affcli.core.specs import BROKEN_SHAPE, BROKEN_TOOL
 from affcli.errors import BadInputError, UsageError, one_line
 from affcli.lab.experiment import ADAPTATION, ADAPTATION_TASKS, Condition, Experiment
-from affcli.lab.own_parts import TOOLS, OwnParts
+from affcli.lab.own_parts import TABLES as OWN_TABLES
+from affcli.lab.own_parts import OwnParts
 from affcli.lab.run_parts import RunParts, tasks_of
 from affcli.simulation.tools.paper import TOOL_PARTS
 
-TABLES = ("experiment", "base", "condition", "sweep", TOOLS)
+TABLES = ("experiment", "base", "condition", "sweep", *OWN_TABLES)
 HEAD = ("name", "question", "robots", "seed", "tasks")
 NAMED: Mapping[str, Kind] = {
     "explorer": "explorers",
@@ -88,7 +89,7 @@ def experiment_of(tables: Mapping[str, Any], source: str, folder: Path | None = 
     with _at(source):
         for table in tables:
             one_of("table", table, TABLES)
-        own_parts = OwnParts(folder, tables.get(TOOLS, ()))
+        own_parts = OwnParts(folder, tables)
         head = _table(tables, "experiment")
         base, sweep = _table(tables, "base"), _table(tables, "sweep")
     place = f"{source}: experiment"
@@ -211,7 +212,7 @@ def _grid(
         raise BadInputError(f"{place}: more than {MOST_CONDITIONS} conditions; sweep fewer values")
     points = [
         [
-            (f"{last if short.count(last) == 1 else key}={_shown(value, own_parts)}", said)
+            (f"{last if short.count(last) == 1 else key}={_shown(key, value, own_parts)}", said)
             for number, value in enumerate(values)
             for said in [_said({key: value}, f"{place}[{number}]", own_parts)]
         ]
@@ -223,13 +224,13 @@ def _grid(
     ]
 
 
-def _shown(value: Any, own_parts: OwnParts) -> str:
+def _shown(key: str, value: Any, own_parts: OwnParts) -> str:
     """Return a swept value as it stands in the name of a condition."""
     if isinstance(value, list):
-        return "+".join(_shown(one, own_parts) for one in value)
+        return "+".join(_shown(key, one, own_parts) for one in value)
     if isinstance(value, int | float):
         return shown(value)
-    return one_line(own_parts.name(str(value)), LONGEST_NAME)
+    return one_line(own_parts.name(key, str(value)), LONGEST_NAME)
 
 
 def _by_name(table: Mapping[str, Any], place: str) -> Iterator[tuple[str, Any]]:
@@ -287,8 +288,8 @@ def _parts(key: str, value: object, own_parts: OwnParts) -> str | list[str]:
         raise BadInputError(f"{one_line(value, 40)} must be {kind}")
     found = []
     for text in texts:
-        name = own_parts.name(text) if key == "tools" else text
-        if key == "tools" and name in own_parts.tools:
+        name = own_parts.name(key, text)
+        if own_parts.has(key, name):
             found.append(name)
             continue
         if key == "tasks" and not {":", "@"} & set(text):
@@ -310,12 +311,13 @@ def _condition(name: str, said: Said, own_parts: OwnParts) -> tuple[Condition, d
     settings = settings_by_name({k: v for k, v in said.items() if "." in k}, "settings")
     parts = RunParts.chosen(
         settings,
-        **{key: own[key] for key in ("repertoire", "binding", "explorer", "world")},
+        repertoire=own_parts.repertoire(own["repertoire"]),
+        **{key: own[key] for key in ("binding", "explorer", "world")},
     )
     planner = registry.component("planners", own["planner"])
     registry.planner(planner)
-    tools = tuple(own_parts.tools.get(tool, tool) for tool in own["tools"])
-    condition = Condition(name, parts, planner, own["hours"], tools, tuple(own["tasks"]))
+    tools, tasks = own_parts.tools(own["tools"]), own_parts.tasks(own["tasks"])
+    condition = Condition(name, parts, planner, own["hours"], tuple(tools), tuple(tasks))
     world = condition.world
     for task_set in condition.tasks:
         tasks_of(world, ADAPTATION_TASKS if task_set == ADAPTATION else task_set, 0)
@@ -323,7 +325,7 @@ def _condition(name: str, said: Said, own_parts: OwnParts) -> tuple[Condition, d
         made = parts.tool(tool)
         if tool is made:
             registry.require_own_tool(made, settings.workspace.tools, f"tool {made.name}")
-    _require_use(own["tools"], condition.tasks)
+    _require_use(own["tools"], own["tasks"])
     default = {key: one.default for key, one in known_settings().items()}
     differing = {k: v for k, v in settings.values().items() if v != default[k] and k != SENSOR}
     sensor = {"sensor": parts.sensor, "settings": differing}

@@ -25,16 +25,22 @@ from affcli.core.specs import (
     Tested,
     TrialRecord,
 )
+from affcli.core.task import tasks_json
 from affcli.core.tool import Tool
 from affcli.core.world import World
 from affcli.lab.believing import TOLD, ToldRun, is_told, told_spec
 from affcli.lab.learning_run import LearningRun
-from affcli.lab.run_parts import RunParts, settings_of, tasks_of, world_of
+from affcli.lab.run_parts import RunParts, TaskSet, settings_of, tasks_of, world_of
 from affcli.lab.trials import trial_specs, whole_trial
 
 ADAPTATION = "adaptation"
 """Among the tasks of a condition: the paper's tool breaks, and does `ADAPTATION_TASKS` (§7.2)."""
 ADAPTATION_TASKS = registry.DEFAULTS["task"]
+
+
+def name_of(task_set: TaskSet) -> str:
+    """Return the name of a set of tasks."""
+    return task_set if isinstance(task_set, str) else task_set[0].task_set
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +53,8 @@ class Condition:
         planner: how its robots choose rows.
         hours: robot hours with each tool.
         tools: which are learned: registered ones by name, a person's own by value.
-        tasks: sets of tasks, each done with every tool; and maybe `ADAPTATION`.
+        tasks: sets of tasks, each done with every tool: by name, one's own by value; and maybe
+            `ADAPTATION`.
     """
 
     name: str
@@ -55,7 +62,7 @@ class Condition:
     planner: Component
     hours: float
     tools: tuple[str | Tool, ...]
-    tasks: tuple[str, ...]
+    tasks: tuple[TaskSet, ...]
 
     @property
     def world(self) -> World:
@@ -64,7 +71,7 @@ class Condition:
 
     def session(self, kind: str, seed: int, robots: int) -> SessionSpec:
         """Return what its session is a function of."""
-        sets = [one for one in self.tasks if one != ADAPTATION] or [ADAPTATION_TASKS]
+        sets = [name_of(one) for one in self.tasks if one != ADAPTATION] or [ADAPTATION_TASKS]
         own = (kind, seed, robots, self.planner, ", ".join(sets))
         return SessionSpec(*own, **self.parts.carried())
 
@@ -84,7 +91,7 @@ class Condition:
                 if broken != whole:
                     yield broken
 
-    def uses(self, spec: LearningSpec, task_set: str) -> bool:
+    def uses(self, spec: LearningSpec, task_set: TaskSet) -> bool:
         """Tell whether tasks of a set start from a table: what one knows of a tool that broke is of
         no use with the whole tool, and the other way round.
         """
@@ -101,7 +108,7 @@ class Condition:
             "planner": self.planner.canonical(),
             "hours": self.hours,
             "tools": [self.parts.tool(tool).canonical() for tool in self.tools],
-            "tasks": list(self.tasks),
+            "tasks": [one if isinstance(one, str) else tasks_json(one) for one in self.tasks],
         }
 
 
@@ -158,7 +165,8 @@ class _Learned:
         """Yield the trials of a condition that start from this run's table."""
         spec, world = self.spec, world_of(self.spec)
         for named in (one for one in condition.tasks if condition.uses(spec, one)):
-            tasks = tasks_of(world, ADAPTATION_TASKS if named == ADAPTATION else named, spec.seed)
+            chosen = ADAPTATION_TASKS if named == ADAPTATION else named
+            tasks = tasks_of(world, chosen, spec.seed)
             if named != ADAPTATION:
                 for trial in trial_specs(
                     *(Protocol.EXTENSION_OF_REACH, spec, spec.held, tasks),

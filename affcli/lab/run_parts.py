@@ -6,9 +6,11 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
+from pathlib import Path
 
 from affcli import registry
 from affcli.config import Settings, require_known, settings_from, with_sensor
+from affcli.core.behavior import ExploratoryBehavior
 from affcli.core.identity import Component, canonical_json
 from affcli.core.names import one_of
 from affcli.core.observation import SensorKind
@@ -19,6 +21,9 @@ from affcli.core.world import World
 from affcli.errors import BadInputError, DatabaseError, UsageError, one_line
 from affcli.simulation.sensing import require_camera
 
+TaskSet = str | tuple[Task, ...]
+"""A set of tasks: by its name or file, or by value."""
+
 
 class RunParts(Parts):
     """What new learning runs carry, but for the tool, the seed and the time."""
@@ -28,12 +33,13 @@ class RunParts(Parts):
         cls,
         settings: Settings,
         *,
-        repertoire: Sequence[str] = (),
+        repertoire: Sequence[str | ExploratoryBehavior] = (),
         binding: str | None = None,
         explorer: str | None = None,
         world: str | None = None,
     ) -> "RunParts":
         """Return the parts that a user named, each as ``name:key=value``; the paper's for the rest.
+        Behaviors also by their files, or by value.
 
         Raises:
             UsageError: no part of that name, or the camera's packages are missing.
@@ -179,18 +185,23 @@ def require_shape(tool: Tool, where: str = "") -> None:
         )
 
 
-def tasks_of(world: World, task_set: str, seed: int) -> tuple[Task, ...]:
+def tasks_of(world: World, task_set: TaskSet, seed: int) -> tuple[Task, ...]:
     """Return the tasks of a set.
 
     Args:
         world: where they are to be done.
-        task_set: its name, maybe with parameters, as ``name:key=value``.
+        task_set: its name, maybe with parameters, as ``name:key=value``; a person's own by their
+            file or by value.
         seed: of what they are drawn by, where the set has such a parameter and does not give it.
 
     Raises:
         UsageError: there is no set of this name.
-        BadInputError: a wrong parameter.
+        BadInputError: a wrong parameter, or a file that is not as it must be.
     """
+    if not isinstance(task_set, str):
+        return task_set
+    if registry.names_file(task_set):
+        return registry.own_tasks(Path(task_set))
     chosen = registry.component("tasks", task_set)
     found = registry.recorded("tasks", chosen)
     drawn = {"seed": seed} if "seed" in found.params else {}

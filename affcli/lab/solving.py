@@ -145,6 +145,10 @@ def tasks_named(task: str, goal: str | None, count: int | None = None) -> str:
         UsageError: of the paper's tasks no goal is named: all of them are of `affcli reproduce`.
         BadInputError: the set has another number of tasks than one may ask for.
     """
+    if registry.names_file(task):
+        if count is not None:
+            raise UsageError("--n is of random tasks; those of a file are as many as it says")
+        return task
     chosen = registry.component("tasks", task)
     if goal is None and chosen.name == registry.DEFAULTS["task"]:
         raise UsageError("Missing option '--goal'; or give --task anywhere")

@@ -24,7 +24,7 @@ from affcli.core.behavior import LONGEST_NAME as LONGEST_PARAMETER
 from affcli.core.behavior import MOST_PARAMETERS
 from affcli.core.names import one_of
 from affcli.errors import BadInputError, UsageError, one_line
-from affcli.tool_files import checked_name
+from affcli.own_files.words import checked_name
 
 TABLES = ("log", "columns", "constants", "parameters", "units", "axes", "names")
 HEAD = ("source", "licence", "citation", "header", "separator", "decimal", "comment")

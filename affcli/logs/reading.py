@@ -15,7 +15,7 @@ from affcli.core.geometry import Point
 from affcli.core.log import NOT_LOGGED, LogFile
 from affcli.errors import BadInputError, one_line
 from affcli.logs.mapping import NAMES, LogMap
-from affcli.tool_files import checked_name
+from affcli.own_files.words import checked_name
 
 LARGEST_LOG = 20_000_000
 """Bytes of one file of a log."""

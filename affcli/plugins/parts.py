@@ -22,11 +22,12 @@ from affcli.core.task import GoalRegion, Task
 from affcli.core.tool import Tool
 from affcli.core.trial import BabblingRecord
 from affcli.errors import BadInputError, PartFailedError, one_line
+from affcli.own_files.behaviors import require_sound as require_sound_behavior
+from affcli.own_files.tools import require_sound as require_sound_tool
 from affcli.plugins.entry_points import Offer, offers
 from affcli.plugins.guarded import guarded_world
 from affcli.plugins.host import Question
 from affcli.plugins.hosted import Host
-from affcli.tool_files import require_sound
 
 LONGEST_REASONS = LARGEST_VALUE // 2
 """Letters of a planner's reasons as JSON: they have room in a row of a database."""
@@ -245,13 +246,16 @@ def _tool(made: Any, _: str) -> Tool:
     """Return a tool, if it is one that the engine can take."""
     if not isinstance(made, Tool):
         raise TypeError(one_line(made, 60))
-    require_sound(made)
+    require_sound_tool(made)
     return made
 
 
 def _behaviors(made: Any, _: str) -> Any:
     """Return behaviors, if they can be stored and read back."""
-    return repertoire_from_json(json.loads(json.dumps(repertoire_json(made), allow_nan=False)))
+    own = repertoire_from_json(json.loads(json.dumps(repertoire_json(made), allow_nan=False)))
+    for behavior in own:
+        require_sound_behavior(behavior)
+    return own
 
 
 def _binding(made: Any, _: str) -> BehaviorCall:

@@ -79,9 +79,7 @@ def test_no_report_counts_it(learned: Path) -> None:
     assert (told["solved"], told["trials"], told["failures"]) == ([], 0, {})
     assert told["invalid"] == 4
     shown = " ".join(done("report", "--db", learned).out.split())
-    assert "4 invalid trials left out: the simulation or a plug-in failed" in " ".join(
-        shown.split()
-    )
+    assert "4 invalid trials left out: the simulation or a plug-in failed" in shown
     page = learned.with_suffix(".html")
     done("report", "--db", learned, "--html", page)
     assert "no trial of this one counts yet" in page.read_text()

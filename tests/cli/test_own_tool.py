@@ -54,6 +54,70 @@ def test_it_is_said_where_babbling_does_not_bring_the_attractor(rake: Path) -> N
     assert words in " ".join(done(*learn).err.split())
 
 
+def test_a_behavior_of_ones_own_is_learned_with_and_used(tmp_path: Path) -> None:
+    done("new", "behavior", "shove", cwd=tmp_path)
+    drawn = ("--out", "shove.svg", "--json")
+    value = done("check", "shove.toml", *drawn, cwd=tmp_path).result
+    assert (value["kind"], value["name"]) == ("behavior", "shove")
+    assert value["facts"]["segments"] == "slide 0, 4; turn 30; slide 0, -4"
+    assert "s of the robot's time" in value["facts"]["begun at the table's centre"]
+    assert (tmp_path / "shove.svg").stat().st_size > 5_000
+    learn = ("learn", "--tool", "t-hook", "--behaviors", "60", "--repertoire", "./shove.toml")
+    run = done(*learn, "--set", "trial.max_steps=3", "--json", "--db", "own.db", cwd=tmp_path)
+    assert run.result["repertoire"] == ["shove"]
+    (tmp_path / "shove.toml").unlink()  # the run has it
+    done("solve", "--goal", "1", "--db", "own.db", cwd=tmp_path)
+    assert all(
+        one["equal"]
+        for one in done("replay", "--all", "--json", "--db", "own.db", cwd=tmp_path).results
+    )
+    assert "all 60 behaviors" in done("replay", "--run", "1", "--db", "own.db", cwd=tmp_path).err
+
+
+def test_tasks_of_ones_own_are_done_and_done_again(tmp_path: Path) -> None:
+    done("new", "task", "corner", cwd=tmp_path)
+    value = done("check", "corner.toml", "--out", "corner.svg", "--json", cwd=tmp_path).result
+    assert (value["kind"], value["name"]) == ("tasks", "corner")
+    assert value["facts"]["tasks"] == "2: 2 goals, each from 1 start"
+    assert "within reach" in value["facts"]["reach"]
+    assert "right" in (tmp_path / "corner.svg").read_text()
+    db = ("--db", "own.db")
+    few = ("learn", "--tool", "t-hook", "--behaviors", "60", "--set", "trial.max_steps=3")
+    done(*few, *db, cwd=tmp_path)
+    solve = ("solve", "--task", "./corner.toml")
+    trials = done(*solve, "--json", *db, cwd=tmp_path).results
+    assert [(one["tasks"], one["goal"]) for one in trials] == [
+        ("corner", "left"),
+        ("corner", "right"),
+    ]
+    assert trials[0]["goal_at"] == [-8.0, 26.0]
+    one = done(*solve, "--goal", "right", "--json", *db, cwd=tmp_path).result
+    assert one["goal"] == "right"
+    assert "--n is of random tasks" in refused(2, *solve, "--n", "3", *db, cwd=tmp_path)
+    done("break-tool", "--task", "corner.toml", *db, cwd=tmp_path)
+    (tmp_path / "corner.toml").unlink()  # the trials have it
+    again = done("replay", "--all", "--json", *db, cwd=tmp_path).results
+    assert [one["equal"] for one in again] == [True] * 7
+    assert "corner.toml: No such file" in refused(4, *solve, *db, cwd=tmp_path)
+
+
+def test_places_that_no_tool_reaches_are_named(tmp_path: Path) -> None:
+    done("new", "task", "corner", cwd=tmp_path)
+    file = tmp_path / "corner.toml"
+    text = file.read_text().replace("[-8, 26]", "[-18, 26]").replace("[8, 26]", "[0, 39]")
+    file.write_text(text)
+    facts = done("check", file, "--set", "table.far=40", "--json").result["facts"]
+    assert facts["reach"] == (
+        "off the table: goal left; out of reach of the paper's tools: goal right"
+    )
+
+
+@pytest.mark.parametrize("kind", ["tool", "behavior", "task"])
+def test_a_name_with_quotes_is_written_as_toml_has_it(kind: str, tmp_path: Path) -> None:
+    done("new", kind, 'so "called"', "--out", "it.toml", cwd=tmp_path)
+    assert done("check", "it.toml", "--json", cwd=tmp_path).result["name"] == 'so "called"'
+
+
 def test_settings_and_experiments_are_checked_too(tmp_path: Path) -> None:
     file = tmp_path / "file.toml"
     file.write_text("[friction]\ntool_puck = 0.3\n")
@@ -62,7 +126,9 @@ def test_settings_and_experiments_are_checked_too(tmp_path: Path) -> None:
     file.write_text('[experiment]\nname = "one"\nrobots = 2\n[base]\nminutes = 1\n')
     experiment = done("check", file, "--json").result
     assert (experiment["kind"], experiment["facts"]["conditions"]) == ("experiment", "base")
-    assert "--out draws tools" in refused(2, "check", file, "--out", tmp_path / "a.svg")
+    assert "--out draws tools, behaviors and tasks" in refused(
+        2, "check", file, "--out", tmp_path / "a.svg"
+    )
     file.write_text("[frictoin]\ntool_puck = 0.3\n")
     assert "frictoin" in refused(4, "check", file)
     assert "No such file" in refused(4, "check", tmp_path / "none.toml")

@@ -1,6 +1,7 @@
 """Tools of files in an experiment: kept by value, and the same rows whoever lets robots live."""
 
 import json
+import shutil
 from pathlib import Path
 
 import pytest
@@ -25,14 +26,32 @@ outline = [[-0.4, 0], [0.4, 0], [0.4, 13.2], [-0.4, 13.2]]
 name = "head"
 outline = [[-5, 9], [-4.2, 9], [-4.2, 13.2], [4.2, 13.2], [4.2, 9], [5, 9], [5, 14], [-5, 14]]
 """
+CORNER = """
+[task]
+name = "corner"
+[[goal]]
+name = "left"
+at = [-8, 26]
+half_width = 2
+[[start]]
+name = "middle"
+at = [0, 20]
+"""
+SHOVE = """
+[behavior]
+name = "shove"
+[[segment]]
+slide = [1, 4]
+"""
 TEXT = """
 [experiment]
 name = "own"
 robots = 2
-tasks = ["extension-of-reach"]
+tasks = ["./tools/corner.toml"]
 [base]
 minutes = 1
 tools = ["stick", "./tools/rake.toml"]
+repertoire = ["paper", "tools/shove.toml"]
 trial.max_steps = 2
 """
 
@@ -40,7 +59,8 @@ trial.max_steps = 2
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
     (tmp_path / "tools").mkdir()
-    (tmp_path / "tools" / "rake.toml").write_text(RAKE)
+    for name, text in (("rake", RAKE), ("corner", CORNER), ("shove", SHOVE)):
+        (tmp_path / "tools" / f"{name}.toml").write_text(text)
     path = tmp_path / "own.toml"
     path.write_text(TEXT)
     return path
@@ -63,7 +83,8 @@ def test_the_tool_of_a_file_lives_the_same_with_workers_in_shards_and_from_what_
         runs = store.learning.runs(session_id=store.experiments.named("own").conditions[0][1])
         assert {one.spec.held for one in runs if one.spec.tool == "rake"} == {rake}
         stored = store.experiments.named("own").definition
-    (tmp_path / "tools" / "rake.toml").unlink()
+    shutil.rmtree(tmp_path / "tools")
+    assert {str(r.spec.repertoire[-1].call) for r in runs} == {"shove"}
     again = experiment_of(stored, "a database")
     assert (again, again.key) == (what, what.key)
     assert contents(live(tmp_path / "two.db", again, workers=2)) == contents(alone)
@@ -72,11 +93,23 @@ def test_the_tool_of_a_file_lives_the_same_with_workers_in_shards_and_from_what_
     assert contents(tmp_path / "merged.db") == contents(alone)
 
 
+@pytest.mark.parametrize(("name", "change"), [("corner", ("26", "25")), ("shove", ("4", "5"))])
+def test_what_a_file_says_is_part_of_the_key(
+    name: str, change: tuple[str, str], file: Path
+) -> None:
+    before = experiment_file(file)
+    other = file.parent / "tools" / f"{name}.toml"
+    other.write_text(other.read_text() + "# the same\n")
+    assert experiment_file(file).key == before.key
+    other.write_text(other.read_text().replace(*change))
+    assert experiment_file(file).key != before.key
+
+
 def test_a_file_that_changed_is_another_experiment(file: Path, tmp_path: Path) -> None:
     path = live(tmp_path / "own.db", experiment_file(file), robots=range(1))
     other = tmp_path / "tools" / "rake.toml"
     other.write_text(RAKE.replace("[-5, 9]", "[-5, 8]"))
-    changed = "is in .* already, but a file of one of its tools says otherwise now; give this"
+    changed = "is in .* already, but a file that it names says otherwise now; give this"
     with (
         open_store(path, create=False, write=True) as store,
         pytest.raises(UsageError, match=changed),
@@ -110,7 +143,11 @@ def experiment_of_text(file: Path, text: str) -> Experiment:
         (('"stick",', '"./tools/rake.toml",'), "base.tools: rake comes twice"),
         (("tools = [", "planner = './tools/rake.toml'\n#"), "base.planner: no planner './tools"),
         (("[base]", "[[tool]]\nname = 'a'\n[base]"), "tool[0]: no table 'name'; did you mean tool"),
-        (("[experiment]", "tool = 3\n[experiment]"), "tool must be the tables of files; name the"),
+        (
+            ("tools/corner", "tools/rake"),
+            "experiment.tasks: task ./tools/rake.toml: no table",
+        ),
+        (("[experiment]", "tool = 3\n[experiment]"), "tool must be tables of files; name files"),
     ],
 )
 def test_what_is_wrong_with_a_file_is_said_with_its_place(

@@ -10,6 +10,7 @@ from affcli.lazy import lazy_modules
 if TYPE_CHECKING:
     from affcli.report.figures import adaptation as adaptation
     from affcli.report.figures import affordances as affordances
+    from affcli.report.figures import behavior as behavior
     from affcli.report.figures import canvas as canvas
     from affcli.report.figures import compare as compare
     from affcli.report.figures import curve as curve

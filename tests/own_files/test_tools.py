@@ -8,7 +8,7 @@ from affcli import registry
 from affcli.core.tool import Color
 from affcli.core.workspace import ToolGeometry
 from affcli.errors import BadInputError
-from affcli.tool_files import tool_from_file
+from affcli.own_files.tools import tool_from_file
 
 HEAD = 'name = "rake"\ncolor = [110, 230, 200]'
 SQUARE = "[[-1, 0], [1, 0], [1, 2], [-1, 2]]"
