@@ -248,7 +248,7 @@ NEW = Group(
             "planner",
             "new:planner",
             "Write a package with a planner to begin with: how to choose a row.",
-            "affcli new planner nearest",
+            "affcli new planner greedy",
         ),
         Command(
             "explorer",
