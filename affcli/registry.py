@@ -288,8 +288,11 @@ def world(chosen: Component, settings: "Settings") -> "World":
 
 class TaskSets(Mapping[str, Callable[..., Any]]):
     """What makes the tasks of each set that there is now, by the text of its component; those of
-    other packages are not counted.
+    other packages are found when they are asked for.
     """
+
+    def __init__(self) -> None:
+        self._parts = dict(parts("tasks"))
 
     def __getitem__(self, text: str) -> Callable[..., Any]:
         """Return what builds a set with the parameters that the text gives; KeyError for none."""
@@ -297,16 +300,18 @@ class TaskSets(Mapping[str, Callable[..., Any]]):
             chosen = Component.parse(text)
         except BadInputError as error:
             raise KeyError(text) from error
-        found = _found("tasks", chosen.name)
+        found = self._parts.get(chosen.name)
+        if found is None and chosen.name not in parts("tasks"):
+            found = _found("tasks", chosen.name)
         if found is None:
             raise KeyError(text)
         return partial(found.build, **found.values(chosen))
 
     def __iter__(self) -> Iterator[str]:
-        return iter(parts("tasks"))
+        return iter(self._parts)
 
     def __len__(self) -> int:
-        return len(parts("tasks"))
+        return len(self._parts)
 
 
 def recorded(kind: Kind, chosen: Component) -> Part:

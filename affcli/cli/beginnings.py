@@ -12,7 +12,7 @@ TOOL = """\
 #   affcli check {file} --out {stem}.png     draws it, or says what is wrong
 #   affcli learn --tool ./{file}             an hour of babbling with it
 #   affcli solve --goal 1 --tool {quoted}
-#   affcli break-tool --tool {quoted} --loses "left tine"
+#   affcli break-tool --tool {quoted}
 
 [tool]
 name = {quoted}
@@ -33,6 +33,9 @@ outline = [[-5, 9], [-4.2, 9], [-4.2, 13.2], [-5, 13.2]]
 [[part]]
 name = "right tine"
 outline = [[4.2, 9], [5, 9], [5, 13.2], [4.2, 13.2]]
+
+[broken]                    # which parts break off, where break-tool is not told by --loses
+loses = ["left tine"]
 """
 
 BEHAVIOR = """\

@@ -85,8 +85,9 @@ def break_tool(
 def _left(used: "LearningSpec", becomes: str | None, loses: Sequence[str]) -> "Tool":
     """Return what is left of the tool of a run: another tool, or it without some parts."""
     name = used.tool
-    if loses:
-        return lab.run_parts.without(used, loses)
+    lost = loses or (used.held.loses if becomes is None else ())
+    if lost:
+        return used.held.without(lost)
     if becomes is None and name not in registry.parts("tools"):
         parts = ", ".join(part.name for part in used.held.parts)
         raise UsageError(f"what does the {name} lose? give --loses with one of {parts}")

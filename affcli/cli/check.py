@@ -103,7 +103,8 @@ def _figure(found: "lab.checking.Checked", file: Path, settings: Settings) -> An
     in_the_hand = registry.tool(lab.checking.TRIED_WITH, place.tools)
     match found.drawn:
         case Tool() as tool:
-            return figures.tools.tools_figure([tool], None, place.puck.radius)
+            broken = (tool, tool.without(tool.loses)) if tool.loses else None
+            return figures.tools.tools_figure([tool], broken, place.puck.radius)
         case ExploratoryBehavior(_, motion):
             start = Pose(*place.wrist_start)
             return figures.behavior.behavior_figure(motion, in_the_hand, start, place.table)

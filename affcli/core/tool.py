@@ -6,6 +6,8 @@ in the hand frame; on the table it is these turned by the wrist's angle and move
 """
 
 import math
+import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any, NamedTuple, NewType
@@ -13,7 +15,8 @@ from typing import Any, NamedTuple, NewType
 from affcli.core.behavior import GRASP, BehaviorCall
 from affcli.core.geometry import ConvexPolygon, Point, Pose
 from affcli.core.identity import key_of
-from affcli.errors import BadInputError, one_line
+from affcli.core.names import one_of
+from affcli.errors import BadInputError, UsageError, one_line
 
 ToolName = NewType("ToolName", str)
 
@@ -62,6 +65,8 @@ class Tool:
         color: of all its parts.
         parts: in the tool frame, or in the hand frame of one that is held; none when a record
             names a tool whose shape is not known.
+        loses: what breaks off when nothing else is said (§7.2), as in `without`; empty if that is
+            not known.
 
     Attributes:
         outlines: the convex parts (in).
@@ -70,6 +75,7 @@ class Tool:
     name: ToolName
     color: Color
     parts: tuple[ToolPart, ...]
+    loses: tuple[str, ...] = ()
     outlines: tuple[ConvexPolygon, ...] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -94,17 +100,37 @@ class Tool:
         )
         return replace(self, parts=parts)
 
+    def without(self, lost: Sequence[str]) -> "Tool":
+        """Return what is left when parts break off.
+
+        Args:
+            lost: their names; of a part that was cut into convex ones, ``tine`` for ``tine 1`` and
+                so on.
+
+        Raises:
+            UsageError: it has no such part, or nothing would be left.
+        """
+        whole = {part.name: re.sub(r" [0-9]+$", "", part.name) for part in self.parts}
+        for name in lost:
+            one_of(f"part of the {self.name}", name, dict.fromkeys([*whole, *whole.values()]))
+        left = tuple(p for p in self.parts if not {p.name, whole[p.name]} & set(lost))
+        if not left:
+            raise UsageError(f"nothing would be left of the {self.name}; leave a part on it")
+        name = ToolName(f"{self.name} without {', '.join(lost)}")
+        return replace(self, name=name, parts=left, loses=())
+
     def parts_missing_in(self, other: "Tool") -> tuple[ToolPart, ...]:
         """Return the parts this tool has and `other` lacks, by name."""
         kept = {part.name for part in other.parts}
         return tuple(part for part in self.parts if part.name not in kept)
 
     def canonical(self) -> dict[str, Any]:
-        """Return the tool by value as JSON types."""
+        """Return the tool by value as JSON types; without `loses` where that is not known."""
         return {
             "name": self.name,
             "color": list(self.color),
             "parts": [[p.name, [list(v) for v in p.outline.vertices]] for p in self.parts],
+            **({"loses": list(self.loses)} if self.loses else {}),
         }
 
     @property
@@ -144,7 +170,8 @@ def tool_from_canonical(value: Any) -> Tool:
         ToolPart(str(name), ConvexPolygon(tuple(Point(float(x), float(y)) for x, y in vertices)))
         for name, vertices in value["parts"]
     )
-    return Tool(ToolName(str(value["name"])), Color((red, green, blue)), parts)
+    loses = tuple(map(str, value.get("loses", ())))
+    return Tool(ToolName(str(value["name"])), Color((red, green, blue)), parts, loses)
 
 
 def unknown_tool(name: str) -> Tool:

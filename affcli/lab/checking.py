@@ -24,6 +24,8 @@ from affcli.report.words import many
 
 TRIED_WITH = "t-hook"
 """In the hand while a behavior is tried."""
+UNTOLD = "not said: [broken] loses = [...]"
+"""What a tool's file says of what breaks off when it says nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +68,7 @@ def checked(path: Path, settings: Settings) -> Checked:
             "conditions": ", ".join(named),
         }
         return Checked("experiment", made.name, facts)
-    if {"tool", "part"} & tables.keys():
+    if {"tool", "part", "broken"} & tables.keys():
         return _tool(path, settings)
     if {"behavior", "segment"} & tables.keys():
         return _behavior(path, settings)
@@ -105,6 +107,7 @@ def _tool(path: Path, settings: Settings) -> Checked:
         "parts": ", ".join(part.name for part in tool.parts),
         "area": f"{sum(part.outline.area for part in tool.parts):.4g} square inches",
         "held": f"{settings.workspace.tools.handle_below_grasp:g} in above its lower end, at x = 0",
+        "broken": f"loses {', '.join(tool.loses)}" if tool.loses else UNTOLD,
         "babbling": beyond_the_box(spec) or "brings the attractor to all sides of it",
         "a camera": _seen(tool, settings),
     }

@@ -2,9 +2,7 @@
 
 import json
 import math
-import re
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -12,11 +10,10 @@ from affcli import registry
 from affcli.config import Settings, require_known, settings_from, with_sensor
 from affcli.core.behavior import ExploratoryBehavior
 from affcli.core.identity import Component, canonical_json
-from affcli.core.names import one_of
 from affcli.core.observation import SensorKind
 from affcli.core.specs import LearningSpec, Parts
 from affcli.core.task import Task
-from affcli.core.tool import Tool, ToolName, hold_of
+from affcli.core.tool import Tool, hold_of
 from affcli.core.world import World
 from affcli.errors import BadInputError, DatabaseError, UsageError, one_line
 from affcli.simulation.sensing import require_camera
@@ -123,27 +120,6 @@ def tool_of(learned: LearningSpec, name: str) -> Tool:
     if name == learned.tool:
         return learned.held
     return registry.tool(name, settings_of_text(learned.settings).workspace.tools)
-
-
-def without(learned: LearningSpec, lost: Sequence[str]) -> Tool:
-    """Return what is left of the tool that was learned when parts break off.
-
-    Args:
-        learned: the run.
-        lost: their names; of a part that was cut into convex ones, ``tine`` for ``tine 1`` and so
-            on.
-
-    Raises:
-        UsageError: it has no such part, or nothing would be left.
-    """
-    whole = learned.held
-    named = {part.name: re.sub(r" [0-9]+$", "", part.name) for part in whole.parts}
-    for name in lost:
-        one_of(f"part of the {whole.name}", name, dict.fromkeys([*named, *named.values()]))
-    left = tuple(p for p in whole.parts if not {p.name, named[p.name]} & set(lost))
-    if not left:
-        raise UsageError(f"--loses: nothing would be left of the {whole.name}; leave a part on it")
-    return replace(whole, name=ToolName(f"{whole.name} without {', '.join(lost)}"), parts=left)
 
 
 def world_of(learned: LearningSpec, *, again: bool = False) -> World:

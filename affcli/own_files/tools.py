@@ -9,11 +9,13 @@
 
 Each part is a polygon in inches, x to the right and y along the handle, away from the robot; or
 ``outline`` stands under ``[tool]`` and is the whole tool. The wrist is at x = 0, as far above the
-lower end of the tool as the grasp says. The tool is stored by value: a file that is changed later
+lower end of the tool as the grasp says. A table ``[broken]`` with ``loses = ["handle"]`` says which
+parts break off when it breaks. The tool is stored by value: a file that is changed later
 changes no run.
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -64,14 +66,28 @@ def require_sound(tool: Tool) -> None:
         corners = _corners([list(corner) for corner in part.outline.vertices], part.name)
         if len(_cut(checked_name(part.name, "part"), corners, part.name)) > 1:
             raise BadInputError(f"{part.name}: it bends inwards")
+    if tool.loses:
+        with at("loses"):
+            tool.without(tool.loses)
 
 
 def _tool(tables: Mapping[str, Any]) -> Tool:
     """Return the tool that tables describe; the message says at which place something is wrong."""
-    require_tables(tables, ("tool", "part"))
+    require_tables(tables, ("tool", "part", "broken"))
     told = head(tables, "tool", ("name", "color", "outline"))
     name, color = checked_name(told.get("name"), "tool: name"), _color(told.get("color"))
-    return Tool(ToolName(name), color, _parts(told, tables))
+    whole = Tool(ToolName(name), color, _parts(told, tables))
+    return replace(whole, loses=_loses(whole, tables)) if "broken" in tables else whole
+
+
+def _loses(whole: Tool, tables: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return which parts break off, by name."""
+    lost = head(tables, "broken", ("loses",)).get("loses")
+    if not isinstance(lost, list) or not lost or not all(isinstance(one, str) for one in lost):
+        raise BadInputError('broken: loses: must be names of parts in a list, ["left tine"]')
+    with at("broken: loses"):
+        whole.without(lost)
+    return tuple(dict.fromkeys(lost))
 
 
 def _parts(told: Mapping[str, Any], tables: Mapping[str, Any]) -> tuple[ToolPart, ...]:

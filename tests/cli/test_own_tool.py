@@ -18,6 +18,7 @@ def test_a_tool_to_begin_with_is_as_it_must_be(rake: Path) -> None:
     assert (value["kind"], value["name"]) == ("tool", "rake")
     assert value["facts"]["parts"] == "handle, bar, left tine, right tine"
     assert value["facts"]["babbling"] == "brings the attractor to all sides of it"
+    assert value["facts"]["broken"] == "loses left tine"
     assert value["facts"]["a camera"] == "tells it from the rest by its color"
     assert "left tine" in rake.with_suffix(".svg").read_text()
     before = rake.read_bytes()
@@ -31,19 +32,30 @@ def test_a_tool_of_ones_own_is_learned_used_broken_and_replayed(rake: Path) -> N
     assert "learned rake (run 1" in done(*learn).err
     rake.write_text(rake.read_text().replace("-5, 9]", "-5, 8]"))  # the run keeps what it had
     done("solve", "--goal", "3", "--start", "1", "--tool", "rake", *db)
-    assert "give --loses with one of handle, bar" in refused(2, "break-tool", "--tool", "rake", *db)
     assert "did you mean left tine" in refused(
         2, "break-tool", "--tool", "rake", "--loses", "tine", *db
     )
-    broken = done("break-tool", "--tool", "rake", "--loses", "left tine", "--json", *db).result
+    broken = done("break-tool", "--tool", "rake", "--json", *db).result  # as its file says
     assert (broken["becomes"], broken["parts_gained"]) == ("rake without left tine", [])
     assert broken["paper"] is None
+    other = ("--loses", "right tine", "--loses", "bar", "--task", "anywhere:n=1")
+    broken = done("break-tool", "--tool", "rake", *other, "--json", *db).result
+    assert broken["becomes"] == "rake without right tine, bar"
     again = done("replay", "--all", "--json", *db).results
-    assert len(again) == 1 + 32
+    assert len(again) == 1 + 32 + 2
     assert all(one["equal"] for one in again)
     assert "learned rake (run 2" in done(*learn).err  # another tool, by its value
     held = rows(rake.with_name("own.db"), "SELECT count(DISTINCT tool_key) FROM learning_run")
     assert held == [(2,)]
+
+
+def test_a_tool_that_does_not_say_how_it_breaks_is_asked(rake: Path) -> None:
+    rake.write_text(rake.read_text().split("[broken]")[0])
+    db = ("--db", rake.with_name("own.db"))
+    done("learn", "--tool", rake, "--behaviors", "20", *db)
+    assert "give --loses with one of handle, bar" in refused(2, "break-tool", "--tool", "rake", *db)
+    facts = done("check", rake, "--json").result["facts"]
+    assert facts["broken"] == "not said: [broken] loses = [...]"
 
 
 def test_it_is_said_where_babbling_does_not_bring_the_attractor(rake: Path) -> None:

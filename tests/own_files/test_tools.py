@@ -1,11 +1,13 @@
 """A tool that a person drew is read as it is, or refused in one line that names the place."""
 
+import json
+import re
 from pathlib import Path
 
 import pytest
 
 from affcli import registry
-from affcli.core.tool import Color
+from affcli.core.tool import Color, tool_from_canonical
 from affcli.core.workspace import ToolGeometry
 from affcli.errors import BadInputError
 from affcli.own_files.tools import tool_from_file
@@ -85,6 +87,35 @@ def test_what_is_wrong_is_named_with_its_place(text: str, words: str, tmp_path: 
     assert words in said
     assert said.startswith("tool ")
     assert said.isprintable()
+
+
+BROKEN = f'{TWO}[broken]\nloses = ["tine"]\n'
+
+
+def test_a_file_says_which_parts_break_off(tmp_path: Path) -> None:
+    """Also of a part that was cut."""
+    tool = tool_from_file(written(tmp_path, BROKEN))
+    assert tool.loses == ("tine",)
+    left = tool.without(tool.loses)
+    assert ([part.name for part in left.parts], left.loses) == (["handle"], ())
+    whole = tool_from_file(written(tmp_path, TWO))
+    assert whole.key != tool.key
+    assert tool_from_canonical(json.loads(json.dumps(tool.canonical()))) == tool
+
+
+@pytest.mark.parametrize(
+    ("loses", "words"),
+    [
+        ('["handle", "tine"]', "broken: loses: nothing would be left of the rake"),
+        ('["tines"]', "broken: loses: no part of the rake 'tines'; did you mean tine"),
+        ("[]", "broken: loses: must be names of parts in a list"),
+        ('"tine"', "broken: loses: must be names of parts in a list"),
+        ('["tine"]\nlooses = 1', "no key of broken 'looses'; did you mean loses"),
+    ],
+)
+def test_what_cannot_break_off_is_refused(loses: str, words: str, tmp_path: Path) -> None:
+    with pytest.raises(BadInputError, match=re.escape(words)):
+        tool_from_file(written(tmp_path, BROKEN.replace('["tine"]', loses)))
 
 
 @pytest.mark.fault(23)
