@@ -10,8 +10,8 @@ from affcli.core.part import Kind
 from affcli.core.setting import Value
 from affcli.errors import UsageError, one_line
 
-LONGEST_TEST = 120.0
-"""Seconds after which a test is taken to go on for ever."""
+LONGEST_LOADING, LONGEST_TEST = 120.0, 120.0
+"""Seconds after which the suite is taken to load, or a test to go on, for ever."""
 
 
 class Verdict(NamedTuple):
@@ -52,18 +52,19 @@ def conforming(kind: Kind, name: str, values: Mapping[str, Value]) -> Iterator[V
 
 def _verdicts(child: Child) -> Iterator[Verdict]:
     """Yield what a process says of its tests, or how it ended before it had said all."""
-    doing = "it is loaded"
+    doing, longest = "it is loaded", LONGEST_LOADING
     while True:
         try:
-            told: Any = child.pipe.recv() if child.pipe.poll(LONGEST_TEST) else None
+            told: Any = child.pipe.recv() if child.pipe.poll(longest) else None
         except GONE:
             code = child.process.wait()
             how = f"signal {-code}" if code < 0 else f"exit code {code}"
             yield Verdict(doing, "failed", f"the process ended ({how})")
             return
         if told is None:
-            yield Verdict(doing, "failed", f"no end within {LONGEST_TEST:g} s")
+            yield Verdict(doing, "failed", f"no end within {longest:g} s")
             return
+        longest = LONGEST_TEST
         what, test, *why = told
         if what == "ended":
             return
