@@ -14,6 +14,7 @@ EXTRAS = {
     "figures": ("figures", ("matplotlib",)),
     "a cluster": ("cluster", ("distributed",)),
     "parquet files": ("parquet", ("pyarrow",)),
+    "Gymnasium": ("gym", ("gymnasium",)),
 }
 """What only some need: by what it is for, the name of the extra and its packages."""
 SEVERAL = 2

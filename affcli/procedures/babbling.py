@@ -85,7 +85,7 @@ def babble(
         end = sensor.observe()
         state.step += 1
         state.seen = end
-        row = _row(state.step, binding, execution, start, end)
+        row = made_row(state.step, binding, execution, start, end)
         record = BabblingRecord(
             state.step, robot.clock, resets, redraws, placing, execution, start, end, row
         )
@@ -93,7 +93,7 @@ def babble(
         yield record
 
 
-def _row(
+def made_row(
     step: int, binding: BehaviorCall, execution: Execution, start: Observation, end: Observation
 ) -> Affordance | None:
     """Return the row that a behavior makes; None when T = 0."""
