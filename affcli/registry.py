@@ -1,8 +1,8 @@
 """Parts by name: the one place where a name becomes a tool, a behavior, a planner, a world.
 
 A part is found by the tuple PARTS of a file in its room: adding one is adding a file. Where a name
-is none of ours, the installed packages are asked (`affcli.plugins`). A sensor is made by
-`simulation.sensing`, which must know it, too.
+is none of ours, the installed packages are asked (`affcli.plugins`). Our sensors are made by
+`simulation.sensing`, which must know them, too.
 """
 
 import math
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from affcli.core.ports import Explorer, Planner
     from affcli.core.task import Task
     from affcli.core.workspace import ToolGeometry
-    from affcli.core.world import Setting, World
+    from affcli.core.world import MakeSensor, Setting, World
     from affcli.errors import PartFailedError
     from affcli.plugins.entry_points import Offer
 
@@ -288,7 +288,7 @@ def world(chosen: Component, settings: "Settings") -> "World":
 
 class TaskSets(Mapping[str, Callable[..., Any]]):
     """What makes the tasks of each set that there is now, by the text of its component; those of
-    other packages are found when they are asked for.
+    other packages are found when they are asked for. Their sensors, too (`BringsSensors`).
     """
 
     def __init__(self) -> None:
@@ -306,6 +306,14 @@ class TaskSets(Mapping[str, Callable[..., Any]]):
         if found is None:
             raise KeyError(text)
         return partial(found.build, **found.values(chosen))
+
+    def sensor(self, kind: str) -> "MakeSensor":
+        """Return what makes a sensor of a package.
+
+        Raises:
+            BadInputError, PartFailedError: as `recorded`; or it is here in another version.
+        """
+        return _built("sensors", Component.parse(kind))
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._parts)

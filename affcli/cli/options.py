@@ -18,8 +18,7 @@ from affcli import lab, registry, store
 from affcli.cli.terminal import say
 from affcli.core.identity import Component
 from affcli.core.limits import LARGEST_SEED, LONGEST_HOURS, LONGEST_NOTE
-from affcli.core.names import one_of
-from affcli.core.observation import SENSOR_KINDS, SensorKind
+from affcli.core.observation import SensorKind
 from affcli.core.part import Kind
 from affcli.errors import BadInputError, UsageError, one_line
 
@@ -37,7 +36,7 @@ FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 
 def checked_sensor(kind: str) -> SensorKind:
     """Return the kind of sensor asked for; UsageError when there is no such kind."""
-    return one_of("sensor", kind, SENSOR_KINDS)
+    return str(registry.component("sensors", kind))
 
 
 def whole_number(option: str, text: object) -> int:
@@ -270,7 +269,7 @@ Sensor = Annotated[
     SensorKind | None,
     typer.Option(
         "--sensor",
-        help="noisy (the default), exact or camera.",
+        help="noisy (the default), exact, camera, or one of a package.",
         metavar="KIND",
         parser=checked_sensor,
     ),
@@ -279,7 +278,7 @@ TrialSensor = Annotated[
     SensorKind | None,
     typer.Option(
         "--sensor",
-        help="noisy, exact or camera; else that of learning.",
+        help="As for learn; else that of learning.",
         metavar="KIND",
         parser=checked_sensor,
     ),

@@ -5,7 +5,7 @@ stand in `core.ports`.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -19,6 +19,24 @@ from affcli.core.specs import LearningSpec, RowStarts, TrialSpec, VerificationSp
 from affcli.core.task import Task
 from affcli.core.tool import Tool
 from affcli.core.trial import Truth
+from affcli.core.workspace import Workspace
+
+MakeSensor = Callable[[Callable[[], Scene], np.random.Generator, Workspace, Tool], Sensor]
+"""Makes a sensor of what gives the scene of each moment, the random stream of its noise, the sizes
+of what stands on the table, and the tool that the robot believes to hold."""
+
+
+@runtime_checkable
+class BringsSensors(Protocol):
+    """What a world is given sets of tasks by, when it knows the sensors of other packages too."""
+
+    def sensor(self, kind: SensorKind) -> MakeSensor:
+        """Return what makes a sensor.
+
+        Raises:
+            BadInputError: there is none, or it is here in another version.
+        """
+
 
 Film = Callable[[float, Scene], None]
 """Called again and again while a behavior is executed, with the robot clock and the scene."""

@@ -10,6 +10,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from affcli import registry
 from affcli.behaviors.positioning import position_wrist
 from affcli.config import settings_by_name, with_sensor
 from affcli.core.affordance import Affordance
@@ -51,7 +52,7 @@ class TableEnv(gymnasium.Env[Seen, Action]):
 
     Args:
         tool: a registered one, or a file.
-        sensor: noisy, exact or camera.
+        sensor: noisy, exact, camera, or one of a package.
         repertoire: the exploratory behaviors, by name or file.
         binding: how the tool is held.
         world: where it takes place.
@@ -85,7 +86,8 @@ class TableEnv(gymnasium.Env[Seen, Action]):
     ) -> None:
         if action not in ("dict", "box"):
             raise UsageError(f"action {action!r}: give dict or box")
-        changed = with_sensor(settings_by_name(dict(settings or {}), "settings"), sensor)
+        seen_through = str(registry.component("sensors", sensor))
+        changed = with_sensor(settings_by_name(dict(settings or {}), "settings"), seen_through)
         parts = RunParts.chosen(changed, repertoire=list(repertoire), binding=binding, world=world)
         self.learned: LearningSpec = parts.spec(tool, 0, 0, 1.0)
         self.calls: tuple[BehaviorCall, ...] = tuple(one.call for one in parts.repertoire)

@@ -22,6 +22,7 @@ from affcli.config import (
     known_settings,
     settings_by_name,
     toml_file,
+    with_sensor,
 )
 from affcli.core.identity import canonical_json, key_of, shown
 from affcli.core.limits import LARGEST_SEED, LONGEST_HOURS, MOST_ROBOTS
@@ -268,11 +269,13 @@ def _said(table: Mapping[str, Any], place: str, own_parts: OwnParts) -> Said:
     for given, value in _by_name(table, place):
         key = _one_key(given)
         _require_unsaid(given, said, place)
-        if "." in key:
+        if "." in key and key != SENSOR:
             said |= checked_by_name({key: value}, place)
             continue
         with _at(f"{place}.{given}"):
-            if key == "hours":
+            if key == SENSOR:
+                said[key] = str(registry.component("sensors", _text(value, "a name", LONGEST_NAME)))
+            elif key == "hours":
                 said[key] = _hours(value, 1.0 if given == "hours" else 60.0)
             else:
                 said[key] = _parts(key, value, own_parts)
@@ -308,7 +311,8 @@ def _condition(name: str, said: Said, own_parts: OwnParts) -> tuple[Condition, d
     own = {**USUAL, **{key: value for key, value in said.items() if "." not in key}}
     # By its version, as one that is said: read again, the stored form is to be the same.
     own["world"] = str(registry.component("worlds", own["world"]))
-    settings = settings_by_name({k: v for k, v in said.items() if "." in k}, "settings")
+    changed = {k: v for k, v in said.items() if "." in k and k != SENSOR}
+    settings = with_sensor(settings_by_name(changed, "settings"), said.get(SENSOR))
     parts = RunParts.chosen(
         settings,
         repertoire=own_parts.repertoire(own["repertoire"]),

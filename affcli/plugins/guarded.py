@@ -59,7 +59,7 @@ def _guarded_call(function: Any, name: str, offer: Offer) -> Any:
     return call
 
 
-def guarded_world(offer: Offer, *args: Any, **values: Any) -> Guarded:
+def guarded_world(offer: Offer, /, *args: Any, **values: Any) -> Guarded:
     """Return a world of another package; PartFailedError when it cannot be made."""
     try:
         return Guarded(loaded(offer).build(*args, **values), offer)

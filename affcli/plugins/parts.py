@@ -18,9 +18,11 @@ from affcli.core.choice import Candidate, Choice, Reaches, Reason, Situation
 from affcli.core.geometry import Point
 from affcli.core.observation import Observation
 from affcli.core.part import Kind, Part
+from affcli.core.scene import Scene
 from affcli.core.task import GoalRegion, Task
 from affcli.core.tool import Tool
 from affcli.core.trial import BabblingRecord
+from affcli.core.workspace import Workspace
 from affcli.errors import BadInputError, PartFailedError, one_line
 from affcli.own_files.behaviors import require_sound as require_sound_behavior
 from affcli.own_files.tools import require_sound as require_sound_tool
@@ -84,6 +86,8 @@ def _builder(host: Host, told: Part) -> Callable[..., Any]:
             return partial(HostedPlanner, host)
         case "explorers":
             return partial(HostedExplorer, host)
+        case "sensors":
+            return partial(HostedSensor, host)
         case "worlds":
             return partial(guarded_world, host.offer)
         case _:
@@ -109,7 +113,7 @@ class HostedPlanner:
         values: its parameters.
     """
 
-    def __init__(self, host: Host, **values: Any) -> None:
+    def __init__(self, host: Host, /, **values: Any) -> None:
         self._host, self._refused = host, host.offer.refused
         self._number = host.keep(self, (), values)
         self.angle_degrees = self._share("angle_degrees", 180.0)
@@ -177,6 +181,7 @@ class HostedExplorer:
         exploratory: Any,
         box: Any,
         choices: np.random.Generator,
+        /,
         **values: Any,
     ) -> None:
         self._host, self._refused, self._choices = host, host.offer.refused, choices
@@ -229,7 +234,63 @@ class HostedExplorer:
         return answer
 
 
-def _value(host: Host, told: Part, *args: Any, **values: Any) -> Any:
+class HostedSensor:
+    """A sensor in a process of its own; the random stream of its noise is that of this one.
+
+    Args:
+        host: the process.
+        look: gives the scene of this moment.
+        noise: the random stream.
+        workspace: what stands where, and how large it is.
+        tool: that the robot believes to hold.
+        values: its parameters.
+    """
+
+    def __init__(
+        self,
+        host: Host,
+        look: Callable[[], Scene],
+        noise: np.random.Generator,
+        workspace: Workspace,
+        tool: Tool,
+        /,
+        **values: Any,
+    ) -> None:
+        self._host, self._refused, self._look, self._noise = host, host.offer.refused, look, noise
+        self._number = host.keep(self, (Question(0), noise, workspace, tool), values, stream=1)
+
+    def observe(self) -> Observation:
+        """Return what is seen."""
+        seen = self._call("observe")
+        try:
+            numbers = [float(value) for value in seen]
+            if len(numbers) == len(Observation._fields) and all(map(math.isfinite, numbers)):
+                return Observation(*numbers)
+        except (TypeError, ValueError):
+            pass
+        raise self._refused(f"it sees {one_line(seen, 100)}, not twelve numbers")
+
+    def observe_goal(self) -> GoalRegion:
+        """Return the goal as seen; LookupError when there is none."""
+        if self._look().goal is None:
+            raise LookupError("there is no goal on the table")
+        goal = self._call("observe_goal")
+        if not isinstance(goal, GoalRegion) or not _finite(*goal.center, goal.half_width):
+            raise self._refused(f"it sees the goal {one_line(goal, 60)}")
+        return goal
+
+    def _call(self, name: str) -> Any:
+        stands = self._noise.bit_generator.state
+        request = ("call", self._number, name, (), stands)
+        answer, self._noise.bit_generator.state = self._host.ask(*request, questions=[self._look])
+        return answer
+
+
+def _finite(*numbers: float) -> bool:
+    return all(map(math.isfinite, numbers))
+
+
+def _value(host: Host, told: Part, /, *args: Any, **values: Any) -> Any:
     """Return what a part builds that is a value: a tool, behaviors, tasks, a binding.
 
     Raises:
@@ -270,7 +331,7 @@ def _tasks(made: Any, name: str) -> tuple[Task, ...]:
     """Return tasks, under the name and the version of their part."""
     for task in made:
         numbers = (*task.goal.center, task.goal.half_width, *task.start)
-        if not isinstance(task.goal, GoalRegion) or not all(map(math.isfinite, numbers)):
+        if not isinstance(task.goal, GoalRegion) or not _finite(*numbers):
             raise ValueError(one_line(task, 60))
     return tuple(replace(task, task_set=name) for task in made)
 

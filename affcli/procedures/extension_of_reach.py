@@ -56,30 +56,29 @@ def extension_of_reach(
     Returns:
         How the trial ended.
     """
-    robot.execute(binding, None)
-    seen = sensor.observe()
-    goal = sensor.observe_goal()
-    for number in range(1, limits.max_steps + 1):
-        if goal.reached(seen):
-            return TrialEnd(Outcome.SOLVED, number - 1, robot.clock)
-        if experimenter.attractor_out_of_reach():
-            return TrialEnd(Outcome.ATTRACTOR_OUT_OF_REACH, number - 1, robot.clock)
-        try:
+    number = 1
+    try:
+        robot.execute(binding, None)
+        seen = sensor.observe()
+        goal = sensor.observe_goal()
+        for number in range(1, limits.max_steps + 1):
+            if goal.reached(seen):
+                return TrialEnd(Outcome.SOLVED, number - 1, robot.clock)
+            if experimenter.attractor_out_of_reach():
+                return TrialEnd(Outcome.ATTRACTOR_OUT_OF_REACH, number - 1, robot.clock)
             step = _step(number, robot, sensor, table, seen, goal, planner)
-        except SimulationDivergedError:
-            # Kept as a trial of its own kind, which counts neither as solved nor as failed.
-            return TrialEnd(Outcome.INVALID, number - 1, robot.clock)
-        except PartFailedError as error:
-            # So is that of a planner or a world of another package, with what it did.
-            why = (Reason(str(error)),)
-            return TrialEnd(Outcome.INVALID, number - 1, robot.clock, why)
-        if isinstance(step, TrialEnd):
-            return step
-        yield step
-        seen = step.end
-    solved = goal.reached(seen)
-    outcome = Outcome.SOLVED if solved else Outcome.STEP_LIMIT
-    return TrialEnd(outcome, limits.max_steps, robot.clock)
+            if isinstance(step, TrialEnd):
+                return step
+            yield step
+            seen = step.end
+        outcome = Outcome.SOLVED if goal.reached(seen) else Outcome.STEP_LIMIT
+        return TrialEnd(outcome, limits.max_steps, robot.clock)
+    except SimulationDivergedError:
+        # Kept as a trial of its own kind, which counts neither as solved nor as failed.
+        return TrialEnd(Outcome.INVALID, number - 1, robot.clock)
+    except PartFailedError as error:
+        # So is that of a planner, a sensor or a world of another package, with what it did.
+        return TrialEnd(Outcome.INVALID, number - 1, robot.clock, (Reason(str(error)),))
 
 
 def _step(

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from affcli.core.observation import SensorKind
+from affcli.core.observation import SENSOR_KINDS, SensorKind
 from affcli.core.part import Part
 from affcli.core.ports import Sensor
 from affcli.core.scene import Scene
 from affcli.core.tool import Color, Tool
 from affcli.core.workspace import Workspace
-from affcli.errors import UsageError
+from affcli.core.world import BringsSensors
+from affcli.errors import BadInputError, UsageError, one_line
 from affcli.perception.camera_settings import CameraSettings
 from affcli.perception.noisy_sensor import NoisySensor, SensorSettings
 from affcli.simulation.tools.paper import paper_tools
@@ -31,13 +32,17 @@ class SimulatedSight:
     """What one simulated robot sees through.
 
     Args:
-        kind: noisy, exact or camera.
+        kind: noisy, exact, camera, or a sensor of another package.
         noise: of the noisy sensor.
         camera: where it stands and how well it sees.
         workspace: what stands on the table.
         tool: the tool that the robot believes to hold; a camera must know its colour.
         seed, robot: whose camera it is: learning runs and trials of one robot and seed share it, as
             if it stayed switched on.
+        brought: makes sensors of other packages.
+
+    Raises:
+        BadInputError: there is no such sensor.
     """
 
     def __init__(
@@ -49,9 +54,16 @@ class SimulatedSight:
         tool: Tool,
         seed: int,
         robot: int,
+        brought: BringsSensors | None = None,
     ) -> None:
         self._kind = kind
         self._noise = noise
+        self._make: Callable[[Callable[[], Scene], np.random.Generator], Sensor] | None = None
+        if kind not in SENSOR_KINDS:
+            if brought is None:
+                raise BadInputError(f"this world knows no sensor {one_line(kind, 60)}")
+            make = brought.sensor(kind)
+            self._make = lambda look, rng: make(look, rng, workspace, tool)
         self._eye = (
             (lambda: eye_of(camera, workspace, tool, seed, robot)) if (kind == "camera") else None
         )
@@ -63,6 +75,8 @@ class SimulatedSight:
             look: gives the scene of this moment.
             rng: decides the noise of its observations.
         """
+        if self._make is not None:
+            return self._make(look, rng)
         if self._eye is not None:
             eye = self._eye()
             from affcli.perception.camera_sensor import CameraSensor

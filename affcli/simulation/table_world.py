@@ -21,7 +21,7 @@ from affcli.core.task import Task
 from affcli.core.tool import Tool, hold_of
 from affcli.core.trial import Truth
 from affcli.core.workspace import Workspace
-from affcli.core.world import Film
+from affcli.core.world import BringsSensors, Film
 from affcli.perception.camera_settings import CameraSettings
 from affcli.perception.noisy_sensor import SensorSettings
 from affcli.simulation.experimenter import SimulatedExperimenter
@@ -241,6 +241,7 @@ class TableWorld:
         sight = SimulatedSight(
             *(sensor, settings.sensor, settings.camera, settings.workspace),
             *(learned.held, seed, learned.robot),
+            self._task_sets if isinstance(self._task_sets, BringsSensors) else None,
         )
         return TableSetting(
             table,

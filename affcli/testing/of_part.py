@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from affcli import registry
@@ -143,6 +144,50 @@ class TestTasks(AtTheTable, TasksContract):
     def make_trial(self, learned: LearningSpec) -> Callable[[Task], TrialSpec]:
         """What makes a trial of a task."""
         return lambda task: trial_of(learned, task)
+
+
+class TestOwnSensor(AtTheTable, SensorContract):
+    """The part is a sensor; one of ours is made with the table."""
+
+    @pytest.fixture
+    def look_through(self, build: Callable[..., Any], part: Part) -> Callable[[Setting], Sensor]:
+        """What makes it for a world that was laid out."""
+
+        def through(setting: Setting) -> Sensor:
+            if not part.package:
+                return setting.sensor
+            rng, tool = np.random.default_rng(3), learning().held
+            made: Sensor = build(setting.scene, rng, SETTINGS.workspace, tool)
+            return made
+
+        return through
+
+    @pytest.fixture
+    def learned(self, part: Part) -> LearningSpec:
+        """A run of the paper's; seen through a sensor of ours."""
+        return learning() if part.package else learning(sensor=part.name)
+
+    @pytest.fixture
+    def sensor(
+        self,
+        look_through: Callable[[Setting], Sensor],
+        make_world: Callable[[], World],
+        learned: LearningSpec,
+    ) -> Sensor:
+        """That of a trial."""
+        world = make_world()
+        task = world.tasks(registry.DEFAULTS["task"])[0]
+        return look_through(world.trial(trial_of(learned, task), learned))
+
+    @pytest.fixture
+    def sensor_without_goal(
+        self,
+        look_through: Callable[[Setting], Sensor],
+        make_world: Callable[[], World],
+        learned: LearningSpec,
+    ) -> Sensor:
+        """That of learning."""
+        return look_through(make_world().learning(learned))
 
 
 class OfTheWorld:

@@ -27,7 +27,7 @@ SUITES: Mapping[Kind, tuple[str, ...]] = {
     "tasks": ("TestTasks",),
     "planners": ("TestPlanner",),
     "explorers": ("TestExplorer",),
-    "sensors": (),
+    "sensors": ("TestOwnSensor",),
     "worlds": ("TestWorld", "TestRobot", "TestSensor", "TestExperimenter"),
 }
 """Which of its classes are of a kind."""

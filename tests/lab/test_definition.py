@@ -173,7 +173,7 @@ def test_as_many_conditions_as_there_may_be_can_be_stored(read: Any, store: Stor
         (f"{HEAD}[base]\nhours = 'long'\n", "base.hours: long must be a number of more than 0"),
         (f"{HEAD}[base]\nminutes = nan\n", "base.minutes: nan must be a number of more than 0"),
         (f"{HEAD}[base]\nminutes = 6\nhours = 1\n", "base.hours: hours is said twice"),
-        (f"{HEAD}[base]\nsensor = 'eye'\n", "base: sensor.kind = eye must be one of noisy, exact"),
+        (f"{HEAD}[base]\nsensor = 'eye'\n", "base.sensor: no sensor 'eye'; did you mean noisy or"),
         (f"{HEAD}[base]\n'sensor.nose' = 1\n", "base: no key sensor.nose; known: "),
         (f"{HEAD}[base]\nsettings.nose = 1\n", "base: no section nose; the sections are"),
         (f"{HEAD}[base]\nnose.length = 1\n", "base: no section nose; the sections are"),

@@ -245,6 +245,43 @@ def test_a_part_can_be_used_again_after_it_failed(install: Install) -> None:
     assert registry.planner(chosen).choose(long).position is not None
 
 
+SENSOR = """
+from affcli.core.part import Part
+from affcli.perception.noisy_sensor import NoisySensor, SensorSettings
+
+class Bad(NoisySensor):
+    asked = 0
+
+    def {method}(self):
+        Bad.asked += 1
+        {does}
+
+MINE = Part("sensors", "mine", "x", "x", lambda look, rng, *_: Bad(look, SensorSettings(), rng))
+"""
+
+
+@pytest.mark.fault(28)
+@pytest.mark.fault(29)
+@pytest.mark.parametrize(
+    ("method", "does", "words", "steps"),
+    [
+        ("observe", "return super().observe() if Bad.asked < 3 else 1 / 0", "ZeroDivision", 0),
+        ("observe", "return super().observe()._replace(object_x=float('nan'))", "it sees ", 0),
+        ("observe", "return (1.0, 2.0)", "it sees (1.0, 2.0), not twelve numbers", 0),
+        ("observe_goal", "return 'there'", "it sees the goal there", 0),
+    ],
+)
+def test_a_trial_that_a_sensor_ended_is_recorded_so(
+    method: str, does: str, words: str, steps: int, install: Install, learned: Path
+) -> None:
+    install(
+        "bad_one", SENSOR.format(method=method, does=does), {"sensors": {"mine": "bad_one:MINE"}}
+    )
+    ended = affcli("solve", "--goal", "2", "--start", "1", "--sensor", "mine", "--db", learned)
+    assert f"counts for nothing: sensor mine of bad-one-0.1: {words}" in ended.err
+    assert rows(learned, "SELECT outcome, steps FROM trial") == [("invalid", steps)]
+
+
 WORLD = """
 from affcli.core.part import Part
 from affcli.simulation.table_world import TableWorld

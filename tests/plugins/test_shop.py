@@ -20,6 +20,7 @@ NAMES: dict[Kind, str] = {
     "behaviors": "shove",
     "explorers": "rambling",
     "planners": "nearest",
+    "sensors": "blurry",
     "tasks": "corner",
     "worlds": "yard",
 }
@@ -27,6 +28,7 @@ PACKAGE = "shop-of-parts-1.2"
 LEARN = (
     *("learn", "--tool", "hoe", "--behaviors", "60", "--explorer", "rambling", "--world", "yard"),
     *("--repertoire", "paper", "--repertoire", "shove:far=2", "--binding", "low"),
+    *("--sensor", "blurry:noise=0.02"),
 )
 
 
@@ -57,6 +59,10 @@ def test_parts_of_a_package_are_learned_with_used_and_done_again(tmp_path: Path)
     assert again["equal"]
     assert "all 60 behaviors" in done("replay", "--run", "1", *db).err
     assert "already learned" in done(*LEARN, *db).err
+    seen = rows(
+        tmp_path / "own.db", "SELECT sensor FROM learning_run UNION SELECT sensor FROM trial"
+    )
+    assert seen == [(f"blurry@{PACKAGE}:noise=0.02",)]
 
 
 @pytest.mark.usefixtures("shop")
@@ -68,6 +74,19 @@ def test_an_explorer_in_its_own_process_is_the_same_and_can_be_gone_on_with(tmp_
     ours, theirs = (contents(tmp_path / f"{name}.db") for name in ("random", "rambling"))
     assert ours["behavior"] == theirs["behavior"]
     assert ours["affordance"] == theirs["affordance"]
+
+
+@pytest.mark.usefixtures("shop")
+def test_a_sensor_in_its_own_process_sees_as_it_would_here(tmp_path: Path) -> None:
+    """The random stream of its noise is that of the run."""
+    few = ("learn", "--tool", "stick", "--behaviors", "30")
+    done(*few, "--sensor", "blurry", "--db", tmp_path / "theirs.db")
+    done(*few, "--set", "sensor.position_noise=0.05", "--db", tmp_path / "ours.db")
+    ours, theirs = (contents(tmp_path / f"{name}.db") for name in ("ours", "theirs"))
+    assert ours["behavior"] == theirs["behavior"]
+    done("solve", "--goal", "1", "--sensor", "blurry", "--db", tmp_path / "ours.db")
+    (*_, last) = done("replay", "--all", "--json", "--db", tmp_path / "ours.db").results
+    assert last["equal"]
 
 
 @pytest.mark.usefixtures("shop")
@@ -103,6 +122,7 @@ name = "ours"
 name = "theirs"
 planner = "nearest"
 world = "yard"
+sensor = "blurry"
 """
 
 

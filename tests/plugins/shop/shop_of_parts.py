@@ -1,19 +1,23 @@
 """A package that somebody else wrote: a part of each kind."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
 
 from affcli.core.behavior import BehaviorCall, BehaviorName, ExploratoryBehavior
 from affcli.core.choice import Candidate, Choice, Reason, Situation
 from affcli.core.geometry import ConvexPolygon, Point
 from affcli.core.motion import Slide
 from affcli.core.part import Part
+from affcli.core.scene import Scene
 from affcli.core.setting import Setting
 from affcli.core.task import GoalRegion, Task
 from affcli.core.tool import Color, Tool, ToolName, ToolPart
 from affcli.core.workspace import ToolGeometry, Workspace
 from affcli.exploration.random_babbling import RandomBabbling
+from affcli.perception.noisy_sensor import NoisySensor, SensorSettings
 from affcli.planning.nested_query import NestedQuery
 from affcli.simulation.table_world import TableWorld
 
@@ -58,6 +62,19 @@ def low(geometry: ToolGeometry) -> BehaviorCall:
     return BehaviorCall.of(BehaviorName("grasp"), {"grasp_point": 0.5})
 
 
+def blurry(
+    look: Callable[[], Scene],
+    rng: np.random.Generator,
+    workspace: Workspace,
+    tool: Tool,
+    *,
+    noise: float,
+) -> NoisySensor:
+    """Return a sensor that sees as ours does, only worse."""
+    del workspace, tool
+    return NoisySensor(look, SensorSettings(position_noise=noise), rng)
+
+
 def corner(workspace: Workspace) -> tuple[Task, ...]:
     """Return one task: from the middle to a corner."""
     far = workspace.table.far - 6.0
@@ -75,11 +92,13 @@ def yard(settings: Any, task_sets: Mapping[str, Any]) -> Yard:
     return Yard(settings, task_sets)
 
 
+NOISE = {"noise": Setting(0.05, "in", "Of each position.", 0.0, 1.0)}
 FAR = {"far": Setting(3.0, "in", "How far it goes.", 0.5, 10.0)}
 NEAREST = Part("planners", "nearest", "nearest to the goal", SOURCE, Nearest)
 RAMBLING = Part("explorers", "rambling", "at random, in a shop", SOURCE, RandomBabbling)
 HOE = Part("tools", "hoe", "a hoe: handle, blade", SOURCE, hoe)
 SHOVE = Part("behaviors", "shove", "forward and back", SOURCE, shove, FAR, version=2)
 LOW = Part("bindings", "low", "by the end of the handle", SOURCE, low)
+BLURRY = Part("sensors", "blurry", "sees badly", SOURCE, blurry, NOISE)
 CORNER = Part("tasks", "corner", "into a corner", SOURCE, corner)
 YARD = Part("worlds", "yard", "the table again", SOURCE, yard)
