@@ -3,7 +3,7 @@
 A test that is about one of them says so with ``@pytest.mark.fault(number)``; `tests/test_faults.py`
 sees to it that each has one. Exit codes: 2 usage, 3 database, 4 bad input. Always: one line on
 stderr that says what is wrong, where, and what to do; never a traceback; nothing that was saved is
-lost. The numbers left out stand for what affcli does not have yet: plug-ins, databases on a server.
+lost. The numbers left out stand for what affcli does not have yet: databases on a server.
 """
 
 FAULTS = {
@@ -51,6 +51,9 @@ FAULTS = {
     26: "A tool's outline that bends inwards: it is cut into convex parts, whose areas sum to its "
     "own.",
     27: "TOML that is nested deep, or a number of thousands of digits: 4.",
+    28: "A part of another package fails to load, raises, answers nonsense, loops or ends its "
+    "process: it is named with its package and the rest works; a trial that it ended is recorded "
+    "as invalid, with what it did.",
     29: "The simulation diverges: the trial is invalid, and never counts as a success.",
     30: "`affcli sql` with anything but one SELECT, or one that is endless or huge: denied, or "
     "stopped within two seconds.",
