@@ -14,7 +14,6 @@ from affcli.config import settings_by_name, with_sensor
 from affcli.core.effects import Effect, Way
 from affcli.core.limits import LARGEST_SEED, LONGEST_HOURS, LONGEST_NOTE, MOST_BEHAVIORS
 from affcli.core.names import one_of
-from affcli.core.observation import SENSOR_KINDS
 from affcli.core.records import LearningRunInfo
 from affcli.core.row_filter import Relation
 from affcli.core.setting import Value
@@ -99,7 +98,7 @@ class Laboratory:
         """
         if sum(length is not None for length in (hours, minutes, behaviors)) > 1:
             raise UsageError("give one of hours, minutes and behaviors")
-        kind = None if sensor is None else one_of("sensor", sensor, SENSOR_KINDS)
+        kind = None if sensor is None else str(registry.component("sensors", sensor))
         said = with_sensor(settings_by_name(settings or {}, "settings"), kind)
         if minutes is not None:
             hours = _within("minutes", minutes, 60.0 * LONGEST_HOURS) / 60.0
@@ -258,7 +257,7 @@ class Laboratory:
         """
         named = None if goal is None else str(goal)
         wanted = WantedTasks(tasks_named(task, named), named, str(start))
-        kind = None if sensor is None else one_of("sensor", sensor, SENSOR_KINDS)
+        kind = None if sensor is None else str(registry.component("sensors", sensor))
         chosen = registry.component("planners", planner)
         with self._opened(write=True) as store:
             runs = learned_runs(store, tool, run, usable=True)

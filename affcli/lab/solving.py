@@ -139,10 +139,11 @@ def solve(
 
 
 def tasks_named(task: str, goal: str | None, count: int | None = None) -> str:
-    """Return which set of tasks is meant.
+    """Return which set of tasks is meant: its name, or its file.
 
     Raises:
-        UsageError: of the paper's tasks no goal is named: all of them are of `affcli reproduce`.
+        UsageError: of the paper's tasks no goal is named: all of them are of `affcli reproduce`; or
+            a number of those in a file.
         BadInputError: the set has another number of tasks than one may ask for.
     """
     if registry.names_file(task):

@@ -108,8 +108,7 @@ def trial_specs(
         planner: how it chooses rows.
         world: where they take place.
     """
-    here = registry.present("worlds", learned.world)
-    place = replace(here, version=world.version)
+    place = replace(registry.present("worlds", learned.world), version=world.version)
     robot, counters = learned.robot, Counters.AS_LEARNED
     return [
         TrialSpec(

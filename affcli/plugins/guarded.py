@@ -60,11 +60,18 @@ def _guarded_call(function: Any, name: str, offer: Offer) -> Any:
 
 
 def guarded_world(offer: Offer, /, *args: Any, **values: Any) -> Guarded:
-    """Return a world of another package; PartFailedError when it cannot be made."""
+    """Return a world of another package; PartFailedError when it cannot be made, or is another than
+    its part says.
+    """
     try:
-        return Guarded(loaded(offer).build(*args, **values), offer)
+        part = loaded(offer)
+        made = part.build(*args, **values)
+        own = (made.name, made.version)
     except Exception as error:
         raise _failure(offer, error) from error
+    if own != (part.name, part.version):
+        raise offer.refused(f"it is {own}, its part {(part.name, part.version)}; let them agree")
+    return Guarded(made, offer)
 
 
 def _failure(offer: Offer, error: Exception) -> PartFailedError:

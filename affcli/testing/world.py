@@ -46,7 +46,7 @@ class WorldContract:
 
     def test_it_says_what_it_is(self, world: World, learned: LearningSpec) -> None:
         assert world.name == learned.world.name
-        assert world.version >= 1
+        assert world.version == learned.world.version >= 1
         assert world.unit
         assert world.exact_replay in (True, False)
         assert all(version(package) for package in world.packages(learned.sensor))

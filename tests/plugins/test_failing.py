@@ -287,6 +287,8 @@ from affcli.core.part import Part
 from affcli.simulation.table_world import TableWorld
 
 class Bad(TableWorld):
+    name, version = "mine", 1
+
     def trial(self, spec, learned):
         setting = super().trial(spec, learned)
         robot, execute = setting.robot, setting.robot.execute
@@ -299,15 +301,18 @@ class Bad(TableWorld):
         return setting
 
 MINE = Part("worlds", "mine", "mine", "a test", Bad)
+OTHER = Part("worlds", "other", "mine", "a test", Bad)
 """
 
 
 @pytest.mark.fault(28)
 def test_a_trial_that_a_world_ended_is_recorded_so(install: Install, tmp_path: Path) -> None:
-    install("bad_one", WORLD, {"worlds": {"mine": "bad_one:MINE"}})
+    install("bad_one", WORLD, {"worlds": {"mine": "bad_one:MINE", "other": "bad_one:OTHER"}})
     db = ("--db", tmp_path / "own.db")
     done("learn", "--tool", "t-hook", "--behaviors", "60", "--world", "mine", *db)
     ended = affcli("solve", "--goal", "2", "--start", "1", "--json", *db)
     assert ended.code == 1
     assert ended.result["outcome"] == "invalid"
     assert "world mine of bad-one-0.1: ZeroDivisionError: division by zero" in ended.err
+    learn = ("learn", "--tool", "stick", "--world", "other", *db)
+    assert "it is ('mine', 1), its part ('other', 1); let them agree" in refused(4, *learn)

@@ -85,6 +85,7 @@ class Yard(TableWorld):
     """The table again, under another name."""
 
     name = "yard"
+    version = 1
 
 
 def yard(settings: Any, task_sets: Mapping[str, Any]) -> Yard:
