@@ -77,7 +77,8 @@ def _table(
 
 def title(result: Comparison) -> str:
     """Return who is compared with whom."""
-    names = " and ".join(other.name for other in result.others)
+    *first, last = (other.name for other in result.others)
+    names = f"{', '.join(first)} and {last}" if first else last
     robots = max((one.robots for one in result.totals), default=0)
     return f"{names} against {result.against.name}: {many(robots, 'pair')} of robots"
 
