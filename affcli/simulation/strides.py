@@ -267,10 +267,10 @@ class Strides:
         for _ in range(REST_STEPS):
             if self._rests():
                 return
-            began = self._bodies.puck_pose()
+            began = None if self._watch is None else self._bodies.puck_pose()
             self._bodies.step(STEP)
             self._velocity = self._bodies.velocity()
-            if self._watch is not None:
+            if began is not None:
                 self._show(began, 0.0, 1)
 
     def _show(self, began: Pose, speed: float, steps: int) -> None:

@@ -108,7 +108,7 @@ def test_learning_that_diverges_keeps_what_was_saved_and_goes_on_when_it_is_mend
 ) -> None:
     database, alone = tmp_path / "my.db", tmp_path / "alone.db"
     learn = ("learn", "--tool", "t-hook", "--behaviors", "1100")
-    ended = diverging("nan", 160, *learn, "--db", database)
+    ended = diverging("nan", 200, *learn, "--db", database)
     assert ended.code == 4
     assert "gave Pose(x=nan" in one_printable_line(ended.err)
     ((kept, status),) = rows(database, "SELECT behaviors, status FROM learning_run")

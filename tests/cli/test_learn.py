@@ -56,7 +56,7 @@ def test_json_holds_the_same_and_nothing_else_is_on_stdout(tmp_path: Path) -> No
         "rows": made,
         "resets": resets,
         "robot_seconds": seconds,
-        "world": "table",
+        "world": "table@2",
         "sensor": "noisy",
         "explorer": "random",
         "binding": "grasp 1",
