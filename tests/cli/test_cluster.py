@@ -31,7 +31,7 @@ robots = 4
 tasks = ["extension-of-reach"]
 [base]
 minutes = 1
-tools = ["t-hook"]
+tools = ["./rake.toml"]
 trial.max_steps = 2
 [[condition]]
 name = "paper"
@@ -73,6 +73,7 @@ def working(file: Path, **env: str) -> AbstractContextManager[subprocess.Popen[s
 
 @pytest.fixture
 def toml(tmp_path: Path) -> Path:
+    done("new", "tool", "rake", cwd=tmp_path)
     path = tmp_path / "two.toml"
     path.write_text(TEXT)
     return path

@@ -3,14 +3,18 @@
 import json
 import subprocess
 import sys
+from itertools import islice
 from pathlib import Path
 
 import pytest
 
 from affcli import registry
+from affcli.config import Settings
 from affcli.core.identity import Component
 from affcli.core.part import Kind
 from affcli.errors import BadInputError, UsageError
+from affcli.lab.learning_run import LearningRun
+from affcli.lab.run_parts import RunParts
 from tests.cli.program import contents, done, environment, refused, rows
 from tests.plugins.conftest import SHOP, Install
 
@@ -74,6 +78,17 @@ def test_an_explorer_in_its_own_process_is_the_same_and_can_be_gone_on_with(tmp_
     ours, theirs = (contents(tmp_path / f"{name}.db") for name in ("random", "rambling"))
     assert ours["behavior"] == theirs["behavior"]
     assert ours["affordance"] == theirs["affordance"]
+
+
+@pytest.mark.usefixtures("shop")
+def test_a_run_with_an_explorer_of_a_package_goes_on_as_if_it_had_not_stopped() -> None:
+    parts = RunParts.chosen(Settings(), explorer="rambling", repertoire=["paper", "shove"])
+    spec = parts.spec("stick", 3, 0, None, 24)
+    whole = list(LearningRun(spec).steps())
+    begun = LearningRun(spec)
+    first = list(islice(begun.steps(), 10))
+    checkpoint = json.loads(json.dumps(begun.checkpoint()))
+    assert [*first, *LearningRun(spec, checkpoint).steps()] == whole
 
 
 @pytest.mark.usefixtures("shop")
