@@ -38,7 +38,7 @@ EXACT = settings_with({"sensor": {"position_noise": 0, "color_noise": 0}}, "a te
 """A sensor without noise."""
 
 UNITS = {"", "in", "in/s", "in/s^2", "s", "kg", "degrees", "degrees/s", "degrees/s^2"}
-UNITS |= {"of 255", "mm", "1/mm^2", "px"}
+UNITS |= {"of 255", "mm", "1/mm^2", "px", "min"}
 """In which settings and parameters are told; empty for a count or a share."""
 
 EIGHTH = 0.125

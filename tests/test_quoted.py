@@ -140,6 +140,12 @@ LIMITS = {
             "place": (1.0, 20.0),
         }.items()
     },
+    "explorers: inventing: babbling": (0.1, 600.0),
+    "explorers: inventing: composing": (0.1, 600.0),
+    "explorers: inventing: turn": (5.0, 180.0),
+    "explorers: inventing: slide": (1.0, 20.0),
+    "explorers: inventing: schemas": (1, 5),
+    "explorers: inventing: most": (1, 20),
     "planners: nested-query: guard": (0.0, 30.0),
     "planners: nested-query: share": (0.001, 1.0),
     "planners: lookahead: smoothing": (0.0, 5.0),

@@ -275,6 +275,13 @@ SECTIONS: dict[str, tuple[Command | Group, ...]] = {
             goes_on=True,
         ),
         Command(
+            "invent",
+            "invent:invent",
+            "Let a robot compose behaviors, and keep the few that bring something new.",
+            "affcli invent --tool stick",
+            goes_on=True,
+        ),
+        Command(
             "solve",
             "solve:solve",
             "Bring the attractor over a goal region with the tables that were learned.",

@@ -124,7 +124,11 @@ def learn(
 
     settings = with_sensor(load_settings(config, changes or ()), sensor)
     parts = lab.run_parts.RunParts.chosen(
-        settings, repertoire=repertoire or (), binding=binding, explorer=explorer, world=world
+        settings,
+        repertoire=lab.inventing.repertoire_of(repertoire, database),
+        binding=binding,
+        explorer=explorer,
+        world=world,
     )
     specs = [parts.spec(name, seed, 0, hours, behaviors) for name in names]
     with opened(database, create=bool(names), write=True) as store:
@@ -132,8 +136,8 @@ def learn(
             specs = lab.learning.interrupted(store)
             if not specs:
                 raise UsageError(f"nothing to resume in {database}; learn a tool: --tool t-hook")
-        runs, stuck = _begun(store, specs, note, all_or_none=bool(names))
-        done = _learned(store, runs, workers)
+        runs, stuck = begun_runs(store, specs, note, all_or_none=bool(names))
+        done = learned_runs_of(store, runs, workers)
         found = [(run, store.results.behavior_groups(run.id)) for run in done]
     for words in filter(None, (lab.run_parts.beyond_the_box(run.spec) for run in done)):
         say(words)
@@ -172,7 +176,7 @@ def _check_together(
         raise UsageError("give one of --hours, --minutes and --behaviors")
 
 
-def _begun(
+def begun_runs(
     store: "stores.Store", specs: list[LearningSpec], note: str | None, *, all_or_none: bool
 ) -> tuple[list[LearningRunInfo], list[str]]:
     """Return the runs as far as they came, and why others cannot go on.
@@ -192,7 +196,7 @@ def _begun(
     return runs, stuck
 
 
-def _learned(
+def learned_runs_of(
     store: "stores.Store", runs: list[LearningRunInfo], workers: int
 ) -> list[LearningRunInfo]:
     """Let runs go on to their end, with a bar for each on stderr; say what each gave."""

@@ -74,7 +74,11 @@ def reproduce(
     pool = checked_pool(workers, scheduler)
     settings = with_sensor(load_settings(config, changes or ()), sensor)
     chosen = lab.run_parts.RunParts.chosen(
-        settings, repertoire=repertoire or (), binding=binding, explorer=explorer, world=world
+        settings,
+        repertoire=lab.inventing.repertoire_of(repertoire, database),
+        binding=binding,
+        explorer=explorer,
+        world=world,
     )
     what = lab.reproduction.Reproduced(chosen, planner, seed)
     with opened(database, create=own or not resume, write=True) as store:

@@ -74,7 +74,8 @@ def show_run(
     with opened(database) as store:
         run = store.learning.run(run_id)
         groups = store.results.behavior_groups(run_id) if run.kept is Keep.ALL else None
-        found = run, store.runs.belongings(run_id), groups, store.logs.source(run_id)
+        belongings, log = store.runs.belongings(run_id), store.logs.source(run_id)
+        found = run, belongings, groups, log, store.inventions.of_run(run_id)
     if groups is None:
         say(f"its behaviors were not kept (--keep {run.kept})")
     show_either(

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import islice
 from typing import Any, NewType
 
 from affcli.core.geometry import Pose
@@ -65,6 +66,52 @@ class ExploratoryBehavior:
 
 Repertoire = tuple[ExploratoryBehavior, ...]
 """The exploratory behaviors that babbling draws from, in order."""
+
+SCHEMAS: Mapping[str, tuple[str, ...]] = {"slide": ("x", "y"), "turn": ("angle",)}
+"""The motor schemas that behaviors are composed of, each with its parameters (in, degrees)."""
+
+
+def composed(motion: Motion) -> ExploratoryBehavior:
+    """Return the behavior that slides and turns make, called by what it does: ``turn 31``.
+
+    Of several the name says the kinds in order, the parameters their numbers: ``turn, slide 31 0
+    -4``. Whoever has the call has the motion, so that such a behavior is in no need of a repertoire
+    to be known by.
+
+    Raises:
+        ValueError: it has other segments, none, or too many.
+    """
+    names: list[str] = []
+    params: dict[str, float] = {}
+    for number, (name, *values) in enumerate(motion_json(motion), 1):
+        if name not in SCHEMAS:
+            raise ValueError(f"a {name} is no motor schema")
+        names.append(name)
+        ending = f"_{number}" if number > 1 else ""
+        params |= {f"{param}{ending}": v for param, v in zip(SCHEMAS[name], values, strict=True)}
+    if not names:
+        raise ValueError("a behavior of no segments")
+    return ExploratoryBehavior(BehaviorCall.of(BehaviorName(", ".join(names)), params), motion)
+
+
+def composed_motion(call: BehaviorCall) -> Motion | None:
+    """Return the motion of a call that `composed` gives; None for any other."""
+    names, values = call.name.split(", "), iter(value for _, value in call.params)
+    if not set(names) <= SCHEMAS.keys():
+        return None
+    if sum(len(SCHEMAS[name]) for name in names) != len(call.params):
+        return None
+    motion = motion_from_json([name, *islice(values, len(SCHEMAS[name]))] for name in names)
+    return motion if composed(motion).call == call else None
+
+
+def motion_of(call: BehaviorCall, repertoire: Repertoire) -> Motion | None:
+    """Return the motion of a call: the repertoire's, else that of the motor schemas it names; None
+    when neither has it.
+    """
+    known = (one.motion for one in repertoire if one.call == call)
+    found = next(known, None)
+    return composed_motion(call) if found is None else found
 
 
 def repertoire_json(repertoire: Repertoire) -> list[dict[str, Any]]:

@@ -50,7 +50,8 @@ class Robot(Protocol):
             seen: the latest observation; position wrist aims by it. None before the first one.
 
         Raises:
-            BadInputError: no such behavior in the repertoire; nothing is changed.
+            BadInputError: no such behavior in the repertoire, nor one that is composed of motor
+                schemas which it has; nothing is changed.
             SimulationDivergedError: the world gave a number that is not finite.
         """
 
@@ -159,7 +160,8 @@ class Explorer(Protocol):
         """Be told that the tool would have come down on the attractor at this place."""
 
     def behavior(self, place: Point, start: Observation) -> BehaviorCall:
-        """Return which exploratory behavior to try, now that the wrist is where it was asked to be.
+        """Return which exploratory behavior to try, now that the wrist is where it was asked to be:
+        one that it was given, or one composed of motor schemas (`core.behavior.composed`).
 
         Args:
             place: which of the places it was.

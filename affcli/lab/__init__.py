@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from affcli.lab import experiment as experiment
     from affcli.lab import film_strips as film_strips
     from affcli.lab import importing as importing
+    from affcli.lab import inventing as inventing
     from affcli.lab import learning as learning
     from affcli.lab import learning_curves as learning_curves
     from affcli.lab import overview as overview

@@ -13,6 +13,7 @@ from affcli.core.records import LearningRunInfo
 from affcli.core.row_filter import Comparison, RowFilter
 from affcli.core.specs import LIVES
 from affcli.errors import BadInputError, UsageError, one_line
+from affcli.lab.inventing import EXPLORER
 from affcli.lab.run_parts import require_robot
 from affcli.lab.suggesting import with_database
 from affcli.lab.table import every_run
@@ -77,9 +78,13 @@ _BOUND = re.compile(rf"(<=|>=|<|>)\s*{_NUMBER}", re.ASCII)
 _BETWEEN = re.compile(rf"{_NUMBER}\s*\.\.\s*{_NUMBER}", re.ASCII)
 
 
-def _behavior(text: str, runs: Sequence[LearningRunInfo]) -> BehaviorCall:
-    """Return the exploratory behavior of this name that learning runs have."""
+def _behavior(store: Store, text: str, runs: Sequence[LearningRunInfo]) -> BehaviorCall:
+    """Return the exploratory behavior of this name that learning runs have, or invented."""
     calls = dict.fromkeys(one.call for run in runs for one in run.spec.repertoire)
+    inventive = (run for run in runs if run.spec.explorer.name == EXPLORER)
+    for run in inventive:
+        invented = store.inventions.of_run(run.id)
+        calls |= dict.fromkeys(one.behavior.call for one in invented)
     known = {str(call): call for named in calls for call in (BehaviorCall(named.name, ()), named)}
     return known[one_of("behavior", text, known)]
 
@@ -140,7 +145,7 @@ def chosen_rows(
     return runs, RowFilter(
         runs=None if all_runs else tuple(one.id for one in runs),
         tool=tool,
-        behavior=None if behavior is None else _behavior(behavior, runs),
+        behavior=None if behavior is None else _behavior(store, behavior, runs),
         probability=bounds,
         limit=limit,
     )

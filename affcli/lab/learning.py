@@ -6,6 +6,7 @@ from itertools import islice
 from typing import Any
 
 from affcli.config import first_defaults, known_settings, was_default
+from affcli.core.invention import Invention
 from affcli.core.records import AlikeRun, ChangedPart, LearningRunInfo
 from affcli.core.setting import Setting
 from affcli.core.specs import LearningSpec, LearningStep
@@ -42,6 +43,7 @@ class Chunk:
         robot_seconds: the robot clock after the last of them.
         done: the run is over.
         calibration: of the camera that the robot sees through, as JSON; None without one.
+        inventions: what the robot invented, when the run is over.
     """
 
     steps: Sequence[LearningStep]
@@ -49,6 +51,7 @@ class Chunk:
     robot_seconds: float
     done: bool
     calibration: str | None
+    inventions: tuple[Invention, ...] = ()
 
 
 def learn(
@@ -144,16 +147,19 @@ def learn_all(
             for run, chunk in zip(turn, chunks_of(turn), strict=True):
                 if isinstance(chunk, Failed):
                     raise chunk.error
-                store.learning.append(
-                    run.id,
-                    run.behaviors,
-                    chunk.steps,
-                    chunk.checkpoint,
-                    chunk.robot_seconds,
-                    done=chunk.done,
-                    now=now(),
-                    calibration=chunk.calibration,
-                )
+                with store.turn():  # what it invented is saved with the end of the run, or not
+                    saved = store.learning.append(
+                        run.id,
+                        run.behaviors,
+                        chunk.steps,
+                        chunk.checkpoint,
+                        chunk.robot_seconds,
+                        done=chunk.done,
+                        now=now(),
+                        calibration=chunk.calibration,
+                    )
+                    if saved:
+                        store.inventions.save(run.id, chunk.inventions)
                 found[run.id] = store.learning.run(run.id)
                 yield found[run.id]
             left = [run for run in found.values() if run.status != "done"]
@@ -170,7 +176,8 @@ def next_chunk(info: LearningRunInfo) -> Chunk:
     size = None if run.checkpoint() is None else CHUNK
     steps = tuple(islice(run.steps(), size))
     checkpoint = None if run.done else run.checkpoint()
-    return Chunk(steps, checkpoint, run.setting.robot.clock, run.done, run.calibration)
+    invented = run.inventions() if run.done else ()
+    return Chunk(steps, checkpoint, run.seconds, run.done, run.calibration, invented)
 
 
 def interrupted(store: Store) -> list[LearningSpec]:

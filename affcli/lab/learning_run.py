@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from affcli import registry
+from affcli.core.invention import Invention, Inventor
 from affcli.core.observation import Observation
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import LearningSpec, LearningStep
@@ -73,6 +74,10 @@ class LearningRun:
         if self.spec.behaviors is not None:
             return self._state.step >= self.spec.behaviors
         return self.setting.robot.clock >= 3600.0 * (self.spec.hours or 0.0)
+
+    def inventions(self) -> tuple[Invention, ...]:
+        """Return what the robot invented so far; nothing when it explores in another way."""
+        return self._explorer.inventions() if isinstance(self._explorer, Inventor) else ()
 
     def checkpoint(self) -> dict[str, Any] | None:
         """Return, as JSON types, all that a later `LearningRun` needs to go on from here; None in a

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from affcli.analysis.inventions import in_passing
 from affcli.core.records import LearningRunInfo
 from affcli.core.results import BehaviorGroup
 from affcli.report.sheet import Sheet
@@ -17,15 +18,21 @@ from affcli.report.words import (
 )
 
 
-def groups_table(run: LearningRunInfo, groups: Iterable[BehaviorGroup]) -> Sheet:
-    """Return the behavior-distance groups: tried, rows, mean movement and direction."""
+def groups_table(run: LearningRunInfo, groups: Sequence[BehaviorGroup]) -> Sheet:
+    """Return the behavior-distance groups: tried, rows, mean movement and direction.
+
+    Composed behaviors that were only tried in passing are one group.
+    """
     table = Sheet(
         ("behavior", "tried", "rows", "inches", "degrees"),
         title=f"Run {run.id}: what the {run.spec.tool} affords, by behavior",
         caption="mean movement of the rows; degrees: 0 right, 90 away from the robot, 180 left",
         left=("behavior",),
     )
+    passing = [one for one in groups if in_passing(one.call, run.spec.repertoire, one.rows)]
     for group in groups:
+        if group in passing:
+            continue
         length, (dx, dy) = group.mean_movement, (group.mean_dx, group.mean_dy)
         table.add(
             call_words(group.call),
@@ -34,6 +41,9 @@ def groups_table(run: LearningRunInfo, groups: Iterable[BehaviorGroup]) -> Sheet
             "-" if length is None else f"{length:.1f}",
             "-" if dx is None or dy is None else str(degrees_of(dx, dy)),
         )
+    if passing:
+        counts = (sum(one.tried for one in passing), sum(one.rows for one in passing))
+        table.add(f"{len(passing)} composed in passing", *map(str, counts), "-", "-")
     return table
 
 

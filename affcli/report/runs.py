@@ -3,9 +3,11 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from affcli.core.invention import Invention
 from affcli.core.log import LogSource
 from affcli.core.records import Belongings, LearningRunInfo
 from affcli.core.results import BehaviorGroup
+from affcli.report.inventing import inventions_json, inventions_table
 from affcli.report.learning import groups_json, groups_table, run_json
 from affcli.report.sheet import Sheet
 from affcli.report.words import call_words, clock, fixed, many, run_words, seed_words
@@ -55,14 +57,17 @@ def run_tables(
     belongings: Belongings,
     groups: Sequence[BehaviorGroup] | None,
     log: LogSource | None = None,
+    inventions: Sequence[Invention] = (),
 ) -> tuple[Sheet, ...]:
-    """Return one run in full, and what it learned by behavior unless that was not kept.
+    """Return one run in full, what it learned by behavior unless that was not kept, and what it
+    invented.
 
     Args:
         run: which.
         belongings: what used its table.
         groups: what it learned by behavior; None where that was not kept.
         log: where it comes from, if it was imported.
+        inventions: what the robot invented in it.
     """
     spec = run.spec
     wanted = (
@@ -86,7 +91,8 @@ def run_tables(
     }
     sheet = Sheet(tuple(facts), title=f"Run {run.id}", records=True)
     sheet.add(*facts.values())
-    return (sheet,) if groups is None else (sheet, groups_table(run, groups))
+    sheets = [sheet] if groups is None else [sheet, groups_table(run, groups)]
+    return (*sheets, *([inventions_table(run, inventions)] if inventions else ()))
 
 
 def _log_facts(log: LogSource) -> dict[str, str]:
@@ -128,6 +134,7 @@ def run_in_full_json(
     belongings: Belongings,
     groups: Sequence[BehaviorGroup] | None,
     log: LogSource | None = None,
+    inventions: Sequence[Invention] = (),
 ) -> dict[str, Any]:
     """Return what `run_tables` shows as JSON types."""
     spec = run.spec
@@ -143,4 +150,5 @@ def run_in_full_json(
         "log": None
         if log is None
         else {**log._asdict(), "files": [f._asdict() for f in log.files]},
+        "inventions": inventions_json(inventions),
     }

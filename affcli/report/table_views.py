@@ -4,10 +4,11 @@ import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from affcli.analysis.inventions import tried_in_passing
 from affcli.analysis.regions import parts_at
 from affcli.analysis.row_status import RowStatus, around_trial, compared, current
 from affcli.core.affordance import PROBABILITY_THRESHOLD, Affordance
-from affcli.core.behavior import BehaviorCall
+from affcli.core.behavior import BehaviorCall, motion_of
 from affcli.core.geometry import Pose
 from affcli.core.motion import turned_by
 from affcli.core.records import LearningRunInfo, StoredRow, StoredStep, TrialInfo
@@ -89,7 +90,9 @@ def run_shown(run: LearningRunInfo, rows: Sequence[Affordance], puck_radius: flo
     counted = many(len(rows), "row") + (f", {left_out} of them excluded" if left_out else "")
     title = f"What the {tool_words(run.spec.tool)} affords"
     key = {RowStatus.LIVE: "live row of the affordance table", RowStatus.EXCLUDED: EXCLUDED}
-    return _shown(title, joined(counted, origin), (run,), [view], key, run.spec.held)
+    in_passing = len(rows) - len(view.rows)
+    told = f"{in_passing} of behaviors composed in passing are not drawn" if in_passing else ""
+    return _shown(title, joined(counted, told, origin), (run,), [view], key, run.spec.held)
 
 
 def runs_compared(
@@ -176,8 +179,7 @@ def _turned(row: Affordance, run: LearningRunInfo) -> float:
     """Return by how much the behavior of a row turned the wrist (rad), at most to the roll's limit
     where it was cut short.
     """
-    motions = (one.motion for one in run.spec.repertoire if one.call == row.exploratory)
-    angle = turned_by(next(motions, ()))[-1]
+    angle = turned_by(motion_of(row.exploratory, run.spec.repertoire) or ())[-1]
     if not row.truncated or not row.is_placed():
         return angle
     free = free_turn(Pose(*row.start.wrist, row.wrist_angle), angle)
@@ -225,11 +227,14 @@ def _view(
 ) -> TableView:
     """Return a table over a tool; with `was`, what that had and the tool lacks is missing."""
     binding = run.spec.binding
+    passing = tried_in_passing(run.spec.repertoire, rows)
+    told = zip(rows, statuses, strict=True)
+    shown = [(row, its) for row, its in told if row.exploratory not in passing]
     parts = parts_at(tool, binding, 0.0)
     kept = {part.name for part in parts}
     before = () if was is None or not tool.parts else parts_at(was, binding, 0.0)
     missing = [part for part in before if part.name not in kept]
-    return TableView(heading, parts, missing, puck_radius, list(zip(rows, statuses, strict=True)))
+    return TableView(heading, parts, missing, puck_radius, shown)
 
 
 def _heading(run: LearningRunInfo) -> str:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from affcli.core.affordance import Affordance
-from affcli.core.behavior import Repertoire
+from affcli.core.behavior import Repertoire, motion_of
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.geometry import Point, Pose
 from affcli.core.motion import turned_by
@@ -38,7 +38,7 @@ class SimulatedExperimenter:
         arm = table.workspace.arm
         self._reach = reach_at(arm, arm.flange_height)
         self._lifted = reach_at(arm, arm.flange_height + arm.lift_height)
-        self._turned = {one.call: turned_by(one.motion) for one in repertoire}
+        self._repertoire = repertoire
 
     def lay_out_learning(self, tool: Tool) -> None:
         """Begin a learning run: tool and attractor at random positions, no goal (§6)."""
@@ -143,7 +143,7 @@ class SimulatedExperimenter:
     def _reach_for(self, row: Affordance) -> tuple[Reach, Reach]:
         """Return where the wrist can be, low and lifted, at each angle that `row` turns it to."""
         low, lifted = self._reach, self._lifted.at_angle(row.wrist_angle)
-        for turn in self._turned.get(row.exploratory, (0.0,)):
+        for turn in turned_by(motion_of(row.exploratory, self._repertoire) or ()):
             low = low.at_angle(row.wrist_angle + turn)
         return low, lifted
 

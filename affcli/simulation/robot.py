@@ -14,6 +14,7 @@ from affcli.core.behavior import (
     Execution,
     ExecutionStatus,
     Repertoire,
+    composed_motion,
 )
 from affcli.core.geometry import Point, Pose
 from affcli.core.motion import Motion, Slide, Turn, Wait
@@ -46,13 +47,14 @@ class SimulatedRobot:
 
     Args:
         table: what it acts on.
-        repertoire: the exploratory behaviors by value; grasp and position wrist it knows.
+        repertoire: the exploratory behaviors by value; grasp and position wrist it knows, and what
+            is composed of motor schemas.
     """
 
     def __init__(self, table: Table, repertoire: Repertoire) -> None:
         self._table = table
-        arm, still = table.workspace.arm, Wait(table.workspace.motion.hold)
-        self._motions = {one.call: (*one.motion, still) for one in repertoire}
+        arm = table.workspace.arm
+        self._motions = {one.call: one.motion for one in repertoire}
         self._low = reach_at(arm, arm.flange_height)
         self._high = reach_at(arm, arm.flange_height + arm.lift_height)
         self.clock = 0.0
@@ -133,13 +135,13 @@ class SimulatedRobot:
         """Return the motion of a grasp or of an exploratory behavior; BadInputError for another."""
         if call.name == GRASP:
             return self._take(call)
-        motion = self._motions.get(call)
+        motion = self._motions.get(call) or composed_motion(call)
         if motion is None:
             raise BadInputError(
                 f"{one_line(call, 60)}: this robot has no such behavior; install the affcli that "
                 "made the record"
             )
-        return motion
+        return (*motion, Wait(self._table.workspace.motion.hold))
 
     def _take(self, call: BehaviorCall) -> Motion:
         """Take the tool as a grasp says; return the motion, which is a wait."""

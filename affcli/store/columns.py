@@ -70,6 +70,11 @@ COLUMNS: dict[str, tuple[str, ...]] = {
         *("tries_wanted", "until_verdict", "uses_before", "after_trial", "versions", "started_at"),
         *("verdict", "tries", "decided_after", "robot_seconds", "finished_at"),
     ),
+    "invention": (
+        *("learning_run_id", "number", "exploratory_behavior", "exploratory_params", "motion"),
+        *("step", "gain", "kept"),
+    ),
+    "invention_try": ("learning_run_id", "number", "step", "alike"),
     "log": ("learning_run_id", "source", "licence", "citation", "map", "left_out"),
     "log_file": ("learning_run_id", "number", "name", "sha256"),
     "log_line": ("learning_run_id", "step", "file", "line", "object"),
@@ -82,7 +87,7 @@ COLUMNS: dict[str, tuple[str, ...]] = {
 JSON_COLUMNS = frozenset(
     {
         *("settings", "versions", "repertoire", "binding_params", "exploratory_params"),
-        *("checkpoint", "calibration", "reasons", "last_reasons", "definition", "map"),
+        *("checkpoint", "calibration", "reasons", "last_reasons", "definition", "map", "motion"),
     }
 )
 """Columns that hold JSON."""

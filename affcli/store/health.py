@@ -51,6 +51,12 @@ CHECKS = {
         ON r.id = a.learning_run_id AND r.kept = 'all' LEFT JOIN behavior b
         ON b.learning_run_id = a.learning_run_id AND b.step = a.step
         WHERE coalesce(b.change_detected, 0) <> 1""",
+    "an invention was made, and tried again, by behaviors of its run": """
+        SELECT 'run ' || i.learning_run_id FROM (SELECT learning_run_id, step FROM invention
+        UNION ALL SELECT learning_run_id, step FROM invention_try) i
+        JOIN learning_run r ON r.id = i.learning_run_id AND r.kept = 'all'
+        LEFT JOIN behavior b ON b.learning_run_id = i.learning_run_id AND b.step = i.step
+        WHERE b.step IS NULL""",
     "a trial has as many steps as it says": """
         SELECT 'trial ' || t.id FROM trial t JOIN learning_run r ON r.id = t.learning_run_id
         AND r.kept <> 'trials' WHERE t.steps IS NOT NULL AND t.steps

@@ -22,6 +22,7 @@ from affcli.store.database_file import (
 )
 from affcli.store.experiments import Experiments
 from affcli.store.faults import result_code
+from affcli.store.inventions import Inventions
 from affcli.store.journal import set_journal_mode
 from affcli.store.learning import Learning
 from affcli.store.logs import Logs
@@ -60,6 +61,8 @@ class Store:
         """Testing trials, with the steps of each."""
         self.verifications = Verifications(database)
         """Verifications, with the tries of each."""
+        self.inventions = Inventions(database)
+        """What robots invented."""
         self.logs = Logs(database)
         """Where imported runs come from."""
         self.results = Results(database)

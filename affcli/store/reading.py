@@ -9,7 +9,13 @@ from typing import Any, cast
 from affcli.bounded import json_value
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import AffordanceTable
-from affcli.core.behavior import BehaviorCall, BehaviorName, Repertoire, repertoire_from_json
+from affcli.core.behavior import (
+    BehaviorCall,
+    BehaviorName,
+    Repertoire,
+    composed_motion,
+    repertoire_from_json,
+)
 from affcli.core.choice import Reason, Reasons
 from affcli.core.geometry import Point, Pose
 from affcli.core.identity import Component
@@ -131,8 +137,8 @@ def affordance(row: Columns) -> Affordance:
 
 
 def affordance_table(place: str, rows: Iterable[Columns], learned: LearningSpec) -> AffordanceTable:
-    """Return an affordance table from its rows, which have the behaviors of their run: a robot that
-    has learned them can try them.
+    """Return an affordance table from its rows, which have the behaviors of their run, or composed
+    ones: a robot that has learned them can try them.
 
     Args:
         place: which table, for the message.
@@ -147,11 +153,8 @@ def affordance_table(place: str, rows: Iterable[Columns], learned: LearningSpec)
         table = [affordance(row) for row in rows]
         for row in table:
             known = learned.logged or not any(map(math.isnan, (*row.start, *row.end, *row.travel)))
-            if (
-                not known
-                or row.exploratory not in tried
-                or row.binding.name != learned.binding.name
-            ):
+            able = row.exploratory in tried or composed_motion(row.exploratory) is not None
+            if not (known and able) or row.binding.name != learned.binding.name:
                 raise ValueError(f"row {row.step}: {row.binding}, {row.exploratory}")
         return AffordanceTable(table)
 

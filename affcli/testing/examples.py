@@ -9,11 +9,19 @@ from numpy.typing import NDArray
 from affcli.behaviors.moving import DIRECTIONS
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import AffordanceTable
-from affcli.core.behavior import GRASP, BehaviorCall, BehaviorName, Execution, ExecutionStatus
+from affcli.core.behavior import (
+    GRASP,
+    BehaviorCall,
+    BehaviorName,
+    Execution,
+    ExecutionStatus,
+    composed_motion,
+)
 from affcli.core.behavior import POSITION_WRIST as POSITION
 from affcli.core.change_detection import change_detected
 from affcli.core.choice import Reaches, Situation
 from affcli.core.geometry import Point, Pose
+from affcli.core.motion import Slide, Turn
 from affcli.core.observation import Observation
 from affcli.core.task import GoalRegion
 from affcli.core.trial import BabblingRecord
@@ -90,6 +98,17 @@ def situations() -> Iterator[Situation]:
                 yield situation(table, at=Point(x, 22.0), wrist=wrist, reaches=reaches)
 
 
+def _way(call: BehaviorCall) -> tuple[float, float]:
+    """Return how far a behavior takes the wrist (in); for each degree of a turn 0.1 to the left."""
+    if call.name in DIRECTIONS:
+        x, y = DIRECTIONS[call.name]
+        return x * call["offset_distance"], y * call["offset_distance"]
+    motion = composed_motion(call) or ()
+    slides = [segment for segment in motion if isinstance(segment, Slide)]
+    turned = sum(segment.degrees for segment in motion if isinstance(segment, Turn))
+    return sum(one.dx for one in slides) - 0.1 * turned, sum(one.dy for one in slides)
+
+
 def record(step: int, place: Point, call: BehaviorCall, seen: Observation) -> BabblingRecord:
     """Return what is told of a behavior: it pushes the attractor before it in every other step, and
     meets the edge of the reach half-way in every fifth.
@@ -103,8 +122,7 @@ def record(step: int, place: Point, call: BehaviorCall, seen: Observation) -> Ba
     wrist = Pose(*seen.wrist_for(place))
     start = observation(seen.object_position, wrist.point)
     truncated = step % 5 == 0
-    far = call["offset_distance"] * (0.5 if truncated else 1.0)
-    dx, dy = (far * along for along in DIRECTIONS[call.name])
+    dx, dy = (part * (0.5 if truncated else 1.0) for part in _way(call))
     after, pushed = Pose(wrist.x + dx, wrist.y + dy), 0.6 * (step % 2)
     moved = Point(start.object_x + pushed * dx, start.object_y + pushed * dy)
     end = observation(moved, after.point)

@@ -15,6 +15,7 @@ WRITERS: tuple[Args, ...] = (
     ("learn", "--tool", "TOOL", "--behaviors", "SOME", "--seed", "SEED"),
     ("learn", "--tool", "TOOL", "--seed", "SEED", "--config", "settings.toml"),
     ("learn", "--resume"),
+    ("invent", "--tool", "TOOL", "--minutes", "6", "--seed", "SEED"),
     ("solve", "--goal", "GOAL"),
     ("solve", "--goal", "GOAL", "--tool", "t-hook", "--start", "2"),
     ("solve", "--goal", "GOAL", "--run", "2", "--explain", "--json"),
@@ -31,7 +32,7 @@ WRITERS: tuple[Args, ...] = (
 )
 """What writes into a database, or a copy of it; `db upgrade` is given one of an older schema."""
 WRITING = {"learn", "solve", "break-tool", "reproduce", "db upgrade", "db backup"}
-WRITING |= {"experiment", "import", "runs note", "runs delete", "db merge"}
+WRITING |= {"experiment", "invent", "import", "runs note", "runs delete", "db merge"}
 NOT_THERE = {"compare", "figure compare", "figure plan"}
 """What needs two conditions of one seed, or a plan, which the database under attack has not."""
 MOST_READ = {"figure", "report", "replay"}
@@ -136,6 +137,7 @@ def _command(chance: np.random.Generator) -> Args:
 
 NEED: dict[str, Args] = {
     "learn": ("--tool", "stick", "--behaviors", "20"),
+    "invent": ("--tool", "stick", "--minutes", "6"),
     "solve": ("--goal", "1"),
     "reproduce": ("--robots", "1", "--workers", "1"),
     "db backup": ("--out", "copy.db", "--force"),

@@ -100,6 +100,7 @@ def test_a_command_imports_no_other_command() -> None:
 def test_the_commands_that_go_on_when_given_again() -> None:
     assert [name for name in program.commands if goes_on(name)] == [
         "learn",
+        "invent",
         "reproduce",
         "experiment",
     ]

@@ -28,6 +28,7 @@ ANSWERING = [
 ]
 GIVEN = {
     "learn": "--tool t-hook --behaviors 20",
+    "invent": "--tool stick --minutes 6",
     "solve": "--goal 2",
     "verify": "--rows 10",
     "predict": "--pushes 10",

@@ -15,6 +15,7 @@ from affcli.core.ports import Experimenter, Planner, Robot, Sensor
 from affcli.core.specs import LearningSpec, TrialSpec, VerificationSpec
 from affcli.core.workspace import ToolGeometry
 from affcli.core.world import World
+from affcli.exploration.inventing import Inventing, Limits
 from affcli.exploration.random_babbling import RandomBabbling
 from affcli.simulation.table_world import TableSetting, TableWorld
 from affcli.testing import examples
@@ -57,11 +58,21 @@ class TestRandomBabbling(ExplorerContract):
 
 
 class TestFocused(ExplorerContract):
-    @pytest.fixture(params=sorted(registry.parts("explorers").keys() - {"random"}))
+    @pytest.fixture(params=sorted(registry.parts("explorers").keys() - {"random", "inventing"}))
     def make_explorer(self, request: pytest.FixtureRequest) -> MakeExplorer:
         part = registry.part("explorers", request.param)
         usual = {name: one.default for name, one in part.params.items()}
         return lambda rng: part.build(examples.CALLS, BabblingSettings(draws=8), rng, **usual)
+
+
+class TestInventing(ExplorerContract):
+    """In each of its three ways to go on, and of all that there is to go on from."""
+
+    @pytest.fixture(params=[(30.0, 20.0), (0.1, 20.0), (0.1, 0.5)])
+    def make_explorer(self, request: pytest.FixtureRequest) -> MakeExplorer:
+        babbling, composing = request.param
+        limits = Limits(babbling, composing, turn=45.0, slide=5.0, schemas=2, most=6)
+        return lambda rng: Inventing(examples.CALLS, BabblingSettings(draws=8), rng, limits)
 
 
 class TestGoalRegion(GoalContract):

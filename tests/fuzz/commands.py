@@ -192,6 +192,7 @@ def every_command() -> tuple[Command, ...]:
 
 USUAL = {
     "learn": ("--behaviors", "20"),
+    "invent": ("--tool", "stick", "--minutes", "6"),
     "reproduce": ("--robots", "1", "--workers", "1", "--config", "settings.toml"),
     "predict": ("--pushes", "3"),
     "verify": ("--rows", "3"),

@@ -84,6 +84,7 @@ USED = (LEARN, "solve --goal 2 --start 1 --tool t-hook")
 WRITING = {
     "learn": Writing(LEARN),
     "learn, through a camera": Writing("learn --tool stick --behaviors 4 --sensor camera"),
+    "invent": Writing("invent --tool stick --minutes 6"),
     "solve": Writing("solve --goal 3", (LEARN,), anew=True),
     "break-tool": Writing("break-tool", (LEARN,), anew=True),
     "verify --update": Writing("verify --update --rows 4", (LEARN,), anew=True),

@@ -11,6 +11,7 @@ from markupsafe import Markup
 from affcli import __version__
 from affcli.analysis.breaking import missing_side
 from affcli.analysis.experiment import ExperimentResult
+from affcli.analysis.inventions import tried_in_passing
 from affcli.analysis.overview import Tried, goal_counts
 from affcli.analysis.paper import (
     BROKEN_TRIALS,
@@ -256,7 +257,9 @@ def _tool_section(learned: LearnedRows) -> dict[str, Any]:
     """Return what the page shows of one tool."""
     spec = learned.run.spec
     calls = [one.call for one in spec.repertoire]
-    drawn = drawings.panels(spec.held, spec.binding, learned.rows, calls=calls)
+    passing = tried_in_passing(spec.repertoire, learned.rows.values())
+    shown = {n: row for n, row in learned.rows.items() if row.exploratory not in passing}
+    drawn = drawings.panels(spec.held, spec.binding, shown, calls=calls)
     return {
         "run": learned.run,
         "robot": learned.robot,

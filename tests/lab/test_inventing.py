@@ -1,0 +1,170 @@
+"""A robot that invents: saved by value, gone on with, used by another run; and what is refused."""
+
+import re
+from itertools import islice
+
+import pytest
+
+from affcli.config import Settings
+from affcli.core.behavior import composed
+from affcli.core.invention import kept_of
+from affcli.core.records import LearningRunInfo
+from affcli.core.specs import LearningSpec
+from affcli.errors import AffcliError, BadInputError, UsageError
+from affcli.lab import inventing, learning
+from affcli.lab.inventing import with_inventions
+from affcli.lab.learning import learn
+from affcli.lab.learning_run import LearningRun, gone_on_with
+from affcli.lab.replaying import replay_run
+from affcli.lab.run_parts import RunParts
+from affcli.store import Store, check, run_sql
+from tests.lab.quick import now, spec_of
+
+MINUTES = 16.0
+SEED = 4
+
+
+def inventing_spec(minutes: float = MINUTES, tool: str = "stick") -> LearningSpec:
+    """Return a run that invents."""
+    parts = RunParts.chosen(Settings(), explorer=inventing.explorer(minutes))
+    return parts.spec(tool, SEED, 0, minutes / 60.0)
+
+
+@pytest.fixture
+def invented(store: Store) -> LearningRunInfo:
+    """A finished run that invented something with the stick."""
+    return learn(store, inventing_spec(), now).info
+
+
+def test_an_hour_of_inventing_is_the_explorer_s_default() -> None:
+    assert str(inventing_spec(60.0).explorer) == "inventing"
+
+
+def test_what_was_invented_is_kept_by_value_with_its_tries(
+    store: Store, invented: LearningRunInfo
+) -> None:
+    stored = store.inventions.of_run(invented.id)
+    run = LearningRun(invented.spec)
+    steps = {record.step: record for record, _ in run.steps()}
+    assert stored == run.inventions()
+    assert kept_of(stored)
+    for one in stored:
+        call = one.behavior.call
+        assert composed(one.behavior.motion).call == call
+        assert call not in {own.call for own in invented.spec.repertoire}
+        for step in (one.step, *(step for step, _ in one.tries)):
+            assert steps[step].execution.call == call
+    assert not any(found.wrong for found in check(store.path))
+
+
+def test_which_behaviors_speak_for_what_can_be_asked_in_sql(
+    store: Store, invented: LearningRunInfo
+) -> None:
+    """And in which run a behavior that another run uses was invented."""
+    asked = (
+        "select i.exploratory_behavior, count(*), sum(t.alike) from invention i join invention_try "
+        "t using (learning_run_id, number) join behavior b on b.learning_run_id = "
+        "i.learning_run_id and b.step = t.step and b.exploratory_params = i.exploratory_params "
+        "where i.kept group by i.number order by i.number"
+    )
+    kept = [one for one in store.inventions.of_run(invented.id) if one.kept]
+    assert run_sql(store.path, asked).rows == tuple(
+        (one.behavior.call.name, len(one.tries), one.speak_for) for one in kept
+    )
+
+
+def test_a_run_uses_what_another_invented_and_is_the_same_without_that_one(
+    store: Store, invented: LearningRunInfo
+) -> None:
+    texts = ["paper", f"invented:run={invented.id}"]
+    parts = RunParts.chosen(Settings(), repertoire=with_inventions(store, texts))
+    kept = kept_of(store.inventions.of_run(invented.id))
+    assert parts.repertoire[-len(kept) :] == kept
+    spec = parts.spec("stick", 1, 0, None, 120)
+    used = learn(store, spec, now).info
+    calls = {one.call for one in kept}
+    assert any(row.row.exploratory in calls for row in store.learning.rows(used.id))
+    store.runs.delete(invented.id)
+    assert run_sql(store.path, "select * from invention").rows == ()
+    assert run_sql(store.path, "select * from invention_try").rows == ()
+    assert store.learning.find(spec) == used
+    assert not any(one.differences for one in replay_run(store, used))
+    with pytest.raises(UsageError) as told:
+        with_inventions(store, texts)
+    assert str(told.value) == (
+        f"--repertoire invented:run={invented.id}: no learning run {invented.id}; it was deleted; "
+        "invent anew: affcli invent --tool stick"
+    )
+
+
+@pytest.mark.parametrize("chunk", [1, 17])
+def test_stopped_anywhere_it_invents_the_same(
+    chunk: int, store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Saved chunk by chunk, each by another process that has the checkpoint alone."""
+    spec = inventing_spec(8.0)
+    whole = LearningRun(spec)
+    steps = tuple(whole.steps())
+    monkeypatch.setattr(learning, "CHUNK", chunk)
+    info = learn(store, spec, now).info
+    assert info.behaviors == len(steps)
+    assert store.inventions.of_run(info.id) == whole.inventions()
+    assert not any(one.differences for one in replay_run(store, info))
+
+
+def test_what_a_kill_leaves_says_nothing_of_inventions_and_goes_on(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spec = inventing_spec(8.0)
+    monkeypatch.setattr(learning, "CHUNK", 20)
+    begun = learning.begun(store, spec, now)
+    (part,) = islice(learning.learn_all(store, [begun], now), 1)
+    assert store.inventions.of_run(begun.id) == ()
+    assert gone_on_with(part).behaviors == 20
+    with pytest.raises(UsageError, match="run 1 is not finished; go on: affcli learn --resume"):
+        with_inventions(store, ["invented:run=1"])
+    done = learn(store, spec, now).info
+    assert store.inventions.of_run(done.id) == _inventions(spec)
+
+
+def _inventions(spec: LearningSpec) -> object:
+    run = LearningRun(spec)
+    for _ in run.steps():
+        pass
+    return run.inventions()
+
+
+@pytest.mark.parametrize(
+    ("error", "text", "says"),
+    [
+        (BadInputError, "invented", "name the run that invented them: invented:run=ID"),
+        (BadInputError, "invented:tool=stick", "invented:run=ID"),
+        (BadInputError, "invented:run=x", "invented:run=ID"),
+        (BadInputError, "invented:run=1.5", "invented:run=ID"),
+        (BadInputError, "invented:run=0", "invented:run=ID"),
+        (BadInputError, f"invented:run={2**70}", "invented:run=ID"),
+        (BadInputError, "invented:run", "not of the form"),
+        (UsageError, "invented:run=7", "no learning run 7; they are numbered 1 to 1; invent anew"),
+        (
+            UsageError,
+            "invented:run=1",
+            "run 1 explored by random, it did not invent; invent",
+        ),
+    ],
+)
+def test_what_names_no_invention_is_refused_in_one_line(
+    error: type[AffcliError], text: str, says: str, store: Store
+) -> None:
+    learn(store, spec_of("stick", 3), now)
+    with pytest.raises(error, match=re.escape(says)) as told:
+        with_inventions(store, ["paper", text])
+    assert "\n" not in str(told.value)
+
+
+def test_too_few_minutes_are_refused(store: Store) -> None:
+    with pytest.raises(BadInputError, match=r"--minutes 2: too few to invent anything; give 6 or"):
+        inventing.explorer(2.0)
+    done = learn(store, inventing_spec(6.0, "t-hook"), now).info
+    if not kept_of(store.inventions.of_run(done.id)):
+        with pytest.raises(UsageError, match="run 1 invented nothing; invent anew: affcli invent"):
+            with_inventions(store, ["invented:run=1"])
