@@ -22,7 +22,8 @@ from tests.readmes import ROOT
 FILES = sorted((ROOT / "experiments").rglob("*.toml"))
 SHORT = {"minutes": 2, "settings": {"trial": {"max_steps": 3}}}
 FOLDERS = {
-    *("camera", "exploration", "extension_of_reach", "lookahead", "planners", "tool_adaptation"),
+    *("camera", "exploration", "extension_of_reach", "inventing", "lookahead", "planners"),
+    "tool_adaptation",
 }
 SHORTER = 30.0
 """So many times shorter are the times that conditions have of their own."""

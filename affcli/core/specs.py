@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from affcli.core.behavior import BehaviorCall, Repertoire, repertoire_json
 from affcli.core.geometry import Pose
 from affcli.core.identity import Component, key_of
+from affcli.core.invention import Invention
 from affcli.core.log import LOG
 from affcli.core.observation import SensorKind
 from affcli.core.task import Task
@@ -288,6 +289,20 @@ class Tested(NamedTuple):
     trial: TrialRecord
 
 
+class Invented(NamedTuple):
+    """What a robot invented in one of its learning runs, for others of its runs.
+
+    Args:
+        condition: the first condition that uses it, by its place in the experiment.
+        run: the learning run, by its place in the life.
+        inventions: what it tried again, kept or not.
+    """
+
+    condition: int
+    run: int
+    inventions: tuple[Invention, ...]
+
+
 @dataclass(frozen=True, slots=True)
 class RobotRecord:
     """The life of one robot of an experiment: what it learned, and its testing trials.
@@ -297,12 +312,14 @@ class RobotRecord:
         learned: the spec, the steps and the robot seconds of each learning run.
         tested: all its testing trials; several conditions may have used one learning run.
         calibrations: of its camera in each learning run, as JSON; None without one.
+        invented: what it invented.
     """
 
     robot: int
     learned: tuple[tuple[LearningSpec, tuple[LearningStep, ...], float], ...]
     tested: tuple[Tested, ...]
     calibrations: tuple[str | None, ...]
+    invented: tuple[Invented, ...] = ()
 
     @property
     def trials(self) -> tuple[TrialRecord, ...]:

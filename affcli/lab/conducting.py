@@ -225,11 +225,10 @@ def estimate(
             made_with = dict(zip(sessions, map(_made_with, experiment.conditions), strict=True))
             store.sessions.save_robot(made_with, packed, now())
         size = path.stat().st_size - empty
-    learned = [spec for spec, _ in experiment.learning(0)]
     count = experiment.robots if robots is None else len(robots)
     trials = sum(len(trials) for run in packed.runs for trials in run.trials.values())
-    hours = sum(spec.hours or 0.0 for spec in learned)
-    return Estimate(count, count * len(learned), count * trials, count * hours, seconds, size)
+    hours = sum(run.spec.hours or 0.0 for run in packed.runs)
+    return Estimate(count, count * len(packed.runs), count * trials, count * hours, seconds, size)
 
 
 def _made_with(condition: Condition) -> dict[str, str]:

@@ -31,6 +31,7 @@ from affcli.core.part import Kind
 from affcli.core.specs import BROKEN_SHAPE, BROKEN_TOOL
 from affcli.errors import BadInputError, UsageError, one_line
 from affcli.lab.experiment import ADAPTATION, ADAPTATION_TASKS, Condition, Experiment
+from affcli.lab.inventing import Inventing, are_invented
 from affcli.lab.own_parts import TABLES as OWN_TABLES
 from affcli.lab.own_parts import OwnParts
 from affcli.lab.run_parts import RunParts, tasks_of
@@ -297,6 +298,9 @@ def _parts(key: str, value: object, own_parts: OwnParts) -> str | list[str]:
             continue
         if key == "tasks" and not {":", "@"} & set(text):
             one_of("tasks", text, [*registry.known("tasks", text), ADAPTATION])
+        if key == "repertoire" and are_invented(text):
+            found.append(str(Inventing.parse(text)))
+            continue
         own = text if text == ADAPTATION else registry.component(NAMED[key], text)
         # What of a binding is left out, the sizes of the tools decide: it stays as it is written.
         found.append(text if key == "binding" else str(own))
@@ -313,15 +317,21 @@ def _condition(name: str, said: Said, own_parts: OwnParts) -> tuple[Condition, d
     own["world"] = str(registry.component("worlds", own["world"]))
     changed = {k: v for k, v in said.items() if "." in k and k != SENSOR}
     settings = with_sensor(settings_by_name(changed, "settings"), said.get(SENSOR))
+    given = [text for text in own["repertoire"] if not are_invented(text)]
+    inventing = tuple(Inventing.parse(one) for one in own["repertoire"] if one not in given)
+    if not given:
+        raise BadInputError("repertoire: what robots begin with is missing; add paper")
     parts = RunParts.chosen(
         settings,
-        repertoire=own_parts.repertoire(own["repertoire"]),
+        repertoire=own_parts.repertoire(given),
         **{key: own[key] for key in ("binding", "explorer", "world")},
     )
     planner = registry.component("planners", own["planner"])
     registry.planner(planner)
     tools, tasks = own_parts.tools(own["tools"]), own_parts.tasks(own["tasks"])
-    condition = Condition(name, parts, planner, own["hours"], tuple(tools), tuple(tasks))
+    condition = Condition(
+        *(name, parts, planner, own["hours"], tuple(tools), tuple(tasks), inventing)
+    )
     world = condition.world
     for task_set in condition.tasks:
         tasks_of(world, ADAPTATION_TASKS if task_set == ADAPTATION else task_set, 0)

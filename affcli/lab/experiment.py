@@ -5,17 +5,20 @@ robot's number. It learns once what its conditions share, so they are paired rob
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 from affcli import registry
 from affcli.baselines.planners import ORACLE
 from affcli.core.affordance_table import AffordanceTable
+from affcli.core.behavior import ExploratoryBehavior, Repertoire
 from affcli.core.identity import Component, key_of
+from affcli.core.invention import kept_of
 from affcli.core.specs import (
     BROKEN_SHAPE,
     BROKEN_TOOL,
+    Invented,
     LearningSpec,
     LearningStep,
     Protocol,
@@ -29,6 +32,7 @@ from affcli.core.task import tasks_json
 from affcli.core.tool import Tool
 from affcli.core.world import World
 from affcli.lab.believing import TOLD, ToldRun, is_told, told_spec
+from affcli.lab.inventing import Inventing
 from affcli.lab.learning_run import LearningRun
 from affcli.lab.run_parts import RunParts, TaskSet, settings_of, tasks_of, world_of
 from affcli.lab.trials import trial_specs, whole_trial
@@ -55,6 +59,7 @@ class Condition:
         tools: which are learned: registered ones by name, a person's own by value.
         tasks: sets of tasks, each done with every tool: by name, one's own by value; and maybe
             `ADAPTATION`.
+        inventing: what each robot invents for itself first, to be added to its repertoire.
     """
 
     name: str
@@ -63,6 +68,7 @@ class Condition:
     hours: float
     tools: tuple[str | Tool, ...]
     tasks: tuple[TaskSet, ...]
+    inventing: tuple[Inventing, ...] = ()
 
     @property
     def world(self) -> World:
@@ -75,12 +81,18 @@ class Condition:
         own = (kind, seed, robots, self.planner, ", ".join(sets))
         return SessionSpec(*own, **self.parts.carried())
 
-    def tables(self, seed: int, robot: int) -> Iterator[LearningSpec]:
+    def tables(self, seed: int, robot: int, invented: Repertoire = ()) -> Iterator[LearningSpec]:
         """Yield what the tables of a robot are functions of: learned with each tool; told, where
         the planner is no robot's own.
+
+        Args:
+            seed, robot: which robot.
+            invented: what it invented before; some may have been invented twice.
         """
+        new = tuple(dict.fromkeys(one for one in invented if one not in self.parts.repertoire))
+        parts = replace(self.parts, repertoire=(*self.parts.repertoire, *new))
         for tool in self.tools:
-            spec = self.parts.spec(tool, seed, robot, self.hours)
+            spec = parts.spec(tool, seed, robot, self.hours)
             if not is_told(self.planner):
                 yield spec
                 continue
@@ -109,6 +121,7 @@ class Condition:
             "hours": self.hours,
             "tools": [self.parts.tool(tool).canonical() for tool in self.tools],
             "tasks": [one if isinstance(one, str) else tasks_json(one) for one in self.tasks],
+            **({"inventing": list(map(str, self.inventing))} if self.inventing else {}),
         }
 
 
@@ -140,14 +153,6 @@ class Experiment:
         conditions = [condition.canonical() for condition in self.conditions]
         return key_of({"seed": self.seed, "conditions": conditions})
 
-    def learning(self, robot: int) -> list[tuple[LearningSpec, list[int]]]:
-        """Return what a robot learns, each once, with the conditions that use it."""
-        uses: dict[str, tuple[LearningSpec, list[int]]] = {}
-        for number, condition in enumerate(self.conditions):
-            for spec in condition.tables(self.seed, robot):
-                uses.setdefault(spec.key, (spec, []))[1].append(number)
-        return list(uses.values())
-
 
 class _Learned:
     """A learning run with what trials need of it."""
@@ -158,6 +163,7 @@ class _Learned:
         self.steps: tuple[LearningStep, ...] = tuple(run.steps())
         self.seconds = run.seconds
         self.calibration = run.calibration
+        self.inventions = run.inventions() if isinstance(run, LearningRun) else ()
         rows = (record.affordance for record, _ in self.steps)
         self.table = AffordanceTable(row for row in rows if row is not None)
 
@@ -191,18 +197,38 @@ class _Learned:
         }
 
 
+class _Life:
+    """The learning runs of one robot: each is learned once, whatever uses it."""
+
+    def __init__(self) -> None:
+        self.runs: dict[str, _Learned] = {}
+
+    def learned(self, spec: LearningSpec) -> tuple[int, _Learned]:
+        """Return a run by its spec, and its place in the life."""
+        if spec.key not in self.runs:
+            self.runs[spec.key] = _Learned(spec)
+        return list(self.runs).index(spec.key), self.runs[spec.key]
+
+
 def one_robot(experiment: Experiment, robot: int) -> RobotRecord:
     """Return the life of one robot: a pure function of the experiment and the robot's number."""
-    learned, tested = [], []
-    for number, (spec, conditions) in enumerate(experiment.learning(robot)):
-        run = _Learned(spec)
-        learned.append(run)
-        for condition in conditions:
-            trials = run.trials(experiment.conditions[condition])
-            tested += [Tested(condition, number, trial) for trial in trials]
+    life, seed = _Life(), experiment.seed
+    tested: list[Tested] = []
+    invented: dict[int, Invented] = {}
+    for number, condition in enumerate(experiment.conditions):
+        able: list[ExploratoryBehavior] = []
+        for wanted in condition.inventing:
+            place, run = life.learned(wanted.spec(condition.parts, seed, robot))
+            invented.setdefault(place, Invented(number, place, run.inventions))
+            able += kept_of(run.inventions)
+        for spec in condition.tables(seed, robot, tuple(able)):
+            place, run = life.learned(spec)
+            tested += [Tested(number, place, trial) for trial in run.trials(condition)]
+    runs = life.runs.values()
     return RobotRecord(
         robot,
-        tuple((run.spec, run.steps, run.seconds) for run in learned),
+        tuple((run.spec, run.steps, run.seconds) for run in runs),
         tuple(tested),
-        tuple(run.calibration for run in learned),
+        tuple(run.calibration for run in runs),
+        tuple(invented.values()),
     )

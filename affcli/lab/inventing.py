@@ -1,13 +1,17 @@
 """Inventing behaviors with a tool, and taking what a run invented into a repertoire (§7.1, §8)."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from affcli import registry
 from affcli.core.behavior import ExploratoryBehavior, Repertoire
-from affcli.core.identity import Component
+from affcli.core.identity import Component, shown
 from affcli.core.invention import kept_of
 from affcli.core.limits import LARGEST_SEED
+from affcli.core.specs import LearningSpec
 from affcli.errors import BadInputError, UsageError, one_line
+from affcli.lab.run_parts import RunParts
 from affcli.store import Store, open_store
 
 EXPLORER = "inventing"
@@ -31,6 +35,47 @@ def explorer(minutes: float) -> str:
             "60 for what a tool can do"
         )
     return f"{EXPLORER}:babbling={minutes * BABBLING!r},composing={minutes * COMPOSING!r}"
+
+
+@dataclass(frozen=True, slots=True)
+class Inventing:
+    """That the robots of a condition invent behaviors, each for itself, before they learn.
+
+    Args:
+        tool: with which tool, by its name.
+        minutes: for how long.
+    """
+
+    tool: str
+    minutes: float
+
+    @classmethod
+    def parse(cls, text: str) -> "Inventing":
+        """Return what ``invented:tool=stick,minutes=60`` stands for.
+
+        Raises:
+            UsageError: there is no such tool.
+            BadInputError: a text of another form, or too few minutes.
+        """
+        said = dict(Component.parse(text).params)
+        tool, minutes = said.pop("tool", None), said.pop("minutes", 60.0)
+        if said or not isinstance(tool, str) or isinstance(minutes, str):
+            raise BadInputError(
+                f"{one_line(text, 60)}: each robot invents for itself; say with which tool and how "
+                f"long: {INVENTED}:tool=stick,minutes=60"
+            )
+        explorer(minutes)
+        return cls(registry.part("tools", tool).name, float(minutes))
+
+    def __str__(self) -> str:
+        """Write it as `parse` reads it."""
+        return f"{INVENTED}:tool={self.tool},minutes={shown(self.minutes)}"
+
+    def spec(self, parts: RunParts, seed: int, robot: int) -> LearningSpec:
+        """Return the learning run in which a robot with these parts invents."""
+        way = registry.component("explorers", explorer(self.minutes))
+        own = replace(parts, explorer=way)
+        return own.spec(self.tool, seed, robot, self.minutes / 60.0)
 
 
 def are_invented(text: str) -> bool:

@@ -49,8 +49,9 @@ def curves_of_robots(
         known = ", ".join(map(str, sessions))
         there_are = f"there is {known}" if known else "there is none yet"
         raise UsageError(f"--session {session_id}: no such reproduction; {there_are}")
-    stored = store.learning.runs(session_id=session_id)
-    runs = [run for run in stored if not tools or run.spec.tool in tools]
+    # A run in which a robot invented for its others was not tried out.
+    stored, used = store.learning.runs(session_id=session_id), store.runs.uses()
+    runs = [run for run in stored if run.id in used and (not tools or run.spec.tool in tools)]
     if not runs:
         raise UsageError(f"--session {session_id}: no robot saved yet; go on with it first")
     seconds = _seconds(runs)

@@ -24,6 +24,8 @@ from affcli.store.tables import (
     behavior,
     experiment,
     failed_robot,
+    invention,
+    invention_try,
     learning_run,
     session,
     step,
@@ -298,11 +300,9 @@ class _Merging:
 
     def _bring(self, many: _Many, life: _Life) -> bool:
         """Copy a robot; of one that is there make sure that it is the same, and return False."""
-        c = trial.c
-        used = sa.select(c.learning_run_id).distinct()
-        runs = self._connection.scalars(
-            used.where(c.session_id.in_(many.sessions), c.robot == life.robot)
-        ).all()
+        c = learning_run.c
+        own = sa.and_(c.session_id.in_(many.sessions), c.robot == life.robot)
+        runs = self._connection.scalars(sa.select(c.id).where(own).order_by(c.id)).all()
         if not runs:
             self._copy(many, life)
             return True
@@ -324,6 +324,8 @@ class _Merging:
             own = {**_without(row, "id"), "session_id": sessions[row["session_id"]]}
             runs[row["id"]] = insert_one(self._connection, learning_run, own)
         self._copy_rows(life, behavior, "step", runs)
+        self._copy_rows(life, invention, "number", runs)
+        self._copy_rows(life, invention_try, "step", runs)
         rows = self._copy_numbered(life, runs)
         for row in life.trials():
             own = {

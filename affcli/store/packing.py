@@ -7,6 +7,7 @@ together, as rows a tenth of it; and the worker does the mapping. Needs no SQLAl
 from dataclasses import dataclass
 from typing import Any
 
+from affcli.core.invention import Invention
 from affcli.core.specs import Keep, LearningSpec, RobotRecord, TrialRecord
 from affcli.core.tool import Tool
 from affcli.store.rows import (
@@ -47,6 +48,7 @@ class PackedRun:
         sums: columns of the whole run.
         kept: how much of it is kept.
         trials: those that start from its table, by the condition that they are part of.
+        inventions: what the robot invented in it.
     """
 
     spec: LearningSpec
@@ -56,6 +58,7 @@ class PackedRun:
     sums: dict[str, float]
     kept: Keep
     trials: dict[int, list[PackedTrial]]
+    inventions: tuple[Invention, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +79,8 @@ def pack_robot(record: RobotRecord, keep: Keep = Keep.ALL) -> PackedRobot:
     runs = []
     for number, (spec, steps, seconds) in enumerate(record.learned):
         rows = [r.affordance for r, _ in steps if r.affordance is not None]
-        trials: dict[int, list[PackedTrial]] = {}
+        invented = [one for one in record.invented if one.run == number]
+        trials: dict[int, list[PackedTrial]] = {one.condition: [] for one in invented}
         for condition, run, trial in record.tested:
             if run == number:
                 trials.setdefault(condition, []).append(pack_trial(trial, keep))
@@ -97,6 +101,7 @@ def pack_robot(record: RobotRecord, keep: Keep = Keep.ALL) -> PackedRobot:
                 },
                 kept=keep,
                 trials=trials,
+                inventions=invented[0].inventions if invented else (),
             )
         )
     return PackedRobot(record.robot, tuple(runs))

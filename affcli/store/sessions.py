@@ -11,6 +11,7 @@ from affcli.core.specs import REPRODUCE, RobotRecord, SessionSpec
 from affcli.store import reading, rows
 from affcli.store.connection import Database, insert_many, insert_one, mappings, numbered
 from affcli.store.experiments import settle
+from affcli.store.inventions import Inventions
 from affcli.store.learning import insert_run
 from affcli.store.packing import PackedRobot, pack_robot
 from affcli.store.tables import affordance, behavior, failed_robot, session, trial
@@ -142,6 +143,7 @@ class Sessions:
                 run_id = insert_run(connection, row, run.spec)
                 insert_many(connection, behavior, [(run_id, *one) for one in run.behaviors])
                 insert_many(connection, affordance, [(run_id, *one) for one in run.affordances])
+                Inventions(self.database).save(run_id, run.inventions)
                 rows_of = _affordance_ids(connection, run_id)
                 for condition, trials in run.trials.items():
                     insert_trials(connection, ids[condition], run_id, trials, rows_of)

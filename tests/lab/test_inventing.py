@@ -1,10 +1,14 @@
 """A robot that invents: saved by value, gone on with, used by another run; and what is refused."""
 
 import re
+import tomllib
+from collections.abc import Sequence
 from itertools import islice
+from pathlib import Path
 
 import pytest
 
+from affcli.behaviors.moving import paper_repertoire
 from affcli.config import Settings
 from affcli.core.behavior import composed
 from affcli.core.invention import kept_of
@@ -12,12 +16,15 @@ from affcli.core.records import LearningRunInfo
 from affcli.core.specs import LearningSpec
 from affcli.errors import AffcliError, BadInputError, UsageError
 from affcli.lab import inventing, learning
+from affcli.lab.conducting import begin, run
+from affcli.lab.definition import experiment_of
 from affcli.lab.inventing import with_inventions
 from affcli.lab.learning import learn
+from affcli.lab.learning_curves import curves_of_robots
 from affcli.lab.learning_run import LearningRun, gone_on_with
 from affcli.lab.replaying import replay_run
 from affcli.lab.run_parts import RunParts
-from affcli.store import Store, check, run_sql
+from affcli.store import Store, check, merge, open_store, run_sql
 from tests.lab.quick import now, spec_of
 
 MINUTES = 16.0
@@ -168,3 +175,91 @@ def test_too_few_minutes_are_refused(store: Store) -> None:
     if not kept_of(store.inventions.of_run(done.id)):
         with pytest.raises(UsageError, match="run 1 invented nothing; invent anew: affcli invent"):
             with_inventions(store, ["invented:run=1"])
+
+
+LIFE = """
+[experiment]
+name = "two"
+robots = 2
+seed = 4
+[base]
+minutes = 2
+tools = ["t-hook"]
+tasks = ["extension-of-reach"]
+trial.max_steps = 2
+[[condition]]
+name = "paper"
+[[condition]]
+name = "invented"
+repertoire = ["paper", "invented:tool=stick,minutes=16"]
+[[condition]]
+name = "the same, by another planner"
+repertoire = ["paper", "invented:tool=stick,minutes=16"]
+planner = "lookahead"
+"""
+
+
+def lived(text: str, path: Path, robots: Sequence[int] | None = None) -> None:
+    """Let robots of an experiment live in a database of their own."""
+    experiment = experiment_of(tomllib.loads(text), "a test")
+    with open_store(path, create=True, write=True) as store:
+        info = begin(store, experiment, now)
+        assert list(run(store, experiment, info, 1, now, robots=robots))
+
+
+def test_each_robot_of_an_experiment_invents_for_itself_once(tmp_path: Path) -> None:
+    """The run in which it invented is stored as the others, with its minutes."""
+    path = tmp_path / "two.db"
+    lived(LIFE, path)
+    with open_store(path, create=False, write=False) as store:
+        runs = store.learning.runs(session_id=2)
+        first, second = (one for one in runs if one.spec.explorer.name == "inventing")
+        assert [one.spec.robot for one in (first, second)] == [0, 1]
+        kept = [kept_of(store.inventions.of_run(one.id)) for one in (first, second)]
+        assert kept[0] != kept[1]
+        assert all(one.robot_seconds >= 960.0 for one in (first, second))
+        learned = [one for one in runs if one.spec.tool == "t-hook"]
+        for one, own in zip(learned, kept, strict=True):
+            assert one.spec.repertoire == (*paper_repertoire(), *own)
+        assert len(store.learning.runs(session_id=1)) == 2
+        used = "select count(distinct learning_run_id) from trial where session_id = "
+        assert [run_sql(path, f"{used}{n}").rows for n in (1, 2, 3)] == [((2,),)] * 3
+        (_, [kind]) = curves_of_robots(store, 2)
+        assert (kind.tool, kind.robots) == ("t-hook", 2)
+    assert not any(found.wrong for found in check(path))
+
+
+def test_robots_that_invented_are_brought_together_whole(tmp_path: Path) -> None:
+    whole, merged = tmp_path / "whole.db", tmp_path / "merged.db"
+    parts = [tmp_path / f"{n}.db" for n in (0, 1)]
+    lived(LIFE, whole)
+    for robot, path in enumerate(parts):
+        lived(LIFE, path, [robot])
+    assert merge(parts, merged, now()).new == 2
+    assert merge(parts, merged, now()).new == 0
+    for table in ("invention", "invention_try"):
+        counted = f"select count(*), sum(step), sum(number) from {table}"
+        assert run_sql(merged, counted).rows == run_sql(whole, counted).rows
+    assert not any(found.wrong for found in check(merged))
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ('"invented:run=1"', "each robot invents for itself; say with which tool"),
+        ('"invented:tool=stik"', "did you mean stick"),
+        ('"invented:tool=stick,minutes=2"', "too few to invent anything"),
+        ('"invented:tool=stick", "invented:tool=stick,minutes=60"', "comes twice"),
+    ],
+)
+def test_what_robots_cannot_invent_is_said_before_anything_runs(given: str, says: str) -> None:
+    text = f"{LIFE}repertoire = ['paper', {given}]\n".replace('planner = "lookahead"\n', "")
+    text = text.replace('repertoire = ["paper", "invented:tool=stick,minutes=16"]\nrep', "rep")
+    with pytest.raises(BadInputError, match=re.escape(says)):
+        experiment_of(tomllib.loads(text), "a test")
+
+
+def test_robots_begin_with_something() -> None:
+    text = LIFE.replace('["paper", "invented:tool=stick,minutes=16"]', '["invented:tool=stick"]')
+    with pytest.raises(BadInputError, match="what robots begin with is missing; add paper"):
+        experiment_of(tomllib.loads(text), "a test")
