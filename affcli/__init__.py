@@ -13,9 +13,9 @@ A laboratory is a database. From Python:
     lab.query("select * from affordance_table").pandas()
 
 Each method of `Laboratory` does what the command of its name does (``affcli --help``), and returns
-typed records (`LearningRunInfo`, `SolvedTrial`, `ExperimentResult`, `Comparison`, `Effect`) and
-`Rows`. Errors are one line each: `AffcliError`, and of it `UsageError`, `BadInputError`,
-`DatabaseError`. A notebook that goes from a blank table to a plot of one's own is
+typed records (`LearningRunInfo`, `Invention`, `SolvedTrial`, `ExperimentResult`, `Comparison`,
+`Effect`) and `Rows`. Errors are one line each: `AffcliError`, and of it `UsageError`,
+`BadInputError`, `DatabaseError`. A notebook that goes from a blank table to a plot of one's own is
 ``experiments/tutorial/tutorial.ipynb``. All of it loads when it is first used.
 """
 
@@ -33,6 +33,7 @@ _HOMES = {
     "api.laboratory": ("Laboratory",),
     "api.rows": ("Rows",),
     "core.effects": ("Effect",),
+    "core.invention": ("Invention",),
     "core.records": ("LearningRunInfo",),
     "errors": ("AffcliError", "BadInputError", "DatabaseError", "UsageError"),
     "lab.solving": ("SolvedTrial",),

@@ -5,6 +5,7 @@ from affcli.analysis.paired import Comparison as Comparison
 from affcli.api.laboratory import Laboratory as Laboratory
 from affcli.api.rows import Rows as Rows
 from affcli.core.effects import Effect as Effect
+from affcli.core.invention import Invention as Invention
 from affcli.core.records import LearningRunInfo as LearningRunInfo
 from affcli.errors import AffcliError as AffcliError
 from affcli.errors import BadInputError as BadInputError

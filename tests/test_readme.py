@@ -161,7 +161,9 @@ def is_whole(command: str) -> bool:
         return False
     if "experiments/camera/experiment.toml" in given:
         return False  # a robot through the camera takes half a minute; test_experiments.py has it
-    needed = {"figure": "--out", "solve": "--goal", "learn": "--tool"}.get(words[0])
+    needed = {"figure": "--out", "solve": "--goal", "learn": "--tool", "invent": "--tool"}.get(
+        words[0]
+    )
     if needed is not None:
         return needed in given
     incomplete = {

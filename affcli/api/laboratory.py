@@ -12,6 +12,7 @@ from affcli.analysis.paired import Comparison
 from affcli.api.rows import Rows, rows_of
 from affcli.config import settings_by_name, with_sensor
 from affcli.core.effects import Effect, Way
+from affcli.core.invention import Invention
 from affcli.core.limits import LARGEST_SEED, LONGEST_HOURS, LONGEST_NOTE, MOST_BEHAVIORS
 from affcli.core.names import one_of
 from affcli.core.records import LearningRunInfo
@@ -109,7 +110,11 @@ class Laboratory:
         if len(note or "") > LONGEST_NOTE:
             raise BadInputError(f"note: more than {LONGEST_NOTE} letters")
         parts = RunParts.chosen(
-            said, repertoire=repertoire, binding=binding, explorer=explorer, world=world
+            said,
+            repertoire=lab.inventing.repertoire_of(repertoire, self._path),
+            binding=binding,
+            explorer=explorer,
+            world=world,
         )
         spec = parts.spec(tool, _whole("seed", seed, 0, LARGEST_SEED), 0, hours, behaviors)
         with self._opened(create=True, write=True) as store:
@@ -117,6 +122,40 @@ class Laboratory:
             if note is not None:
                 store.runs.note(learned.id, note)
             return store.learning.run(learned.id)
+
+    def invent(
+        self,
+        tool: str,
+        *,
+        minutes: float = 60.0,
+        seed: int = 0,
+        settings: Mapping[str, Value] | None = None,
+        repertoire: Sequence[str] = (),
+        note: str | None = None,
+    ) -> tuple[LearningRunInfo, tuple[Invention, ...]]:
+        """Let a robot compose behaviors, and keep the few that bring something new.
+
+        ``lab.learn(tool, repertoire=["paper", f"invented:run={run.id}"])`` uses what was kept.
+
+        Args:
+            tool, seed, settings, repertoire, note: as in `learn`.
+            minutes: for all of it.
+
+        Returns:
+            The learning run in which it did so; and what it tried again, kept or not.
+        """
+        explorer = lab.inventing.explorer(_within("minutes", minutes, 60.0 * LONGEST_HOURS))
+        run = self.learn(
+            tool,
+            minutes=minutes,
+            seed=seed,
+            settings=settings,
+            repertoire=repertoire,
+            explorer=explorer,
+            note=note,
+        )
+        with self._opened() as store:
+            return run, store.inventions.of_run(run.id)
 
     def import_log(
         self,

@@ -191,3 +191,14 @@ def test_a_record_that_cannot_be_read_is_left_out_with_a_warning(
     with pytest.warns(UserWarning, match="left out: learning run 1"):
         (run,) = lab.runs()
     assert run.spec.tool == "stick"
+
+
+def test_a_robot_invents_and_another_run_uses_that(tmp_path: Path) -> None:
+    lab = affcli.Laboratory(tmp_path / "my.db")
+    run, inventions = lab.invent("stick", minutes=16, seed=4)
+    kept = [str(one.behavior.call) for one in inventions if one.kept]
+    assert kept
+    used = lab.learn("stick", behaviors=20, repertoire=["paper", f"invented:run={run.id}"])
+    assert [str(one.call) for one in used.spec.repertoire][8:] == kept
+    with pytest.raises(affcli.BadInputError, match="too few to invent"):
+        lab.invent("stick", minutes=1)

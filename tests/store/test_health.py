@@ -5,6 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from affcli.core.behavior import composed
+from affcli.core.invention import Invention
+from affcli.core.motion import Turn
 from affcli.core.specs import Counters
 from affcli.errors import DatabaseError
 from affcli.store import Store, check, open_store
@@ -44,12 +47,14 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
             tries.append((record, truth, ids[row.step]))
             row = counted(row, record)
         store.verifications.save(run.id, verification_spec(), tries, VERSIONS, NOW, NOW)
+        turn = composed((Turn(31.0),))
+        store.inventions.save(run.id, [Invention(turn, 2, 9, ((5, True), (6, True)), kept=True)])
     return path
 
 
 def test_all_is_well_in_a_database_that_was_used(sound: Path) -> None:
     findings = check(sound)
-    assert len(findings) == 19
+    assert len(findings) == 20
     assert [f for f in findings if f.wrong] == []
     assert {f.example for f in findings if f.unfinished} == {"session 1 (solve)"}
 
@@ -77,6 +82,8 @@ def test_all_is_well_in_an_empty_one(store: Store) -> None:
         ("update trial set session_id = 99", "every reference leads somewhere"),
         ("update affordance set start_wrist_to_object_x = NULL", "only a log leaves out"),
         ("update behavior set clock = NULL where step = 2", "only a log leaves out"),
+        ("update invention set step = 99", "an invention was made"),
+        ("update invention_try set step = 99 where step = 5", "an invention was made"),
         ("update learning_run set world = 'log:content=x'", "says where it comes from"),
     ],
 )
