@@ -164,8 +164,8 @@ def is_whole(command: str) -> bool:
     needed = {"figure": "--out", "solve": "--goal", "learn": "--tool", "invent": "--tool"}.get(
         words[0]
     )
-    if needed is not None:
-        return needed in given
+    if words[0] in needed:
+        return needed[words[0]] in given
     incomplete = {
         ("compare",),
         ("experiment",),
