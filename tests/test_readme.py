@@ -161,11 +161,10 @@ def is_whole(command: str) -> bool:
         return False
     if "experiments/camera/experiment.toml" in given:
         return False  # a robot through the camera takes half a minute; test_experiments.py has it
-    needed = {"figure": "--out", "solve": "--goal", "learn": "--tool", "invent": "--tool"}.get(
-        words[0]
-    )
-    if words[0] in needed:
-        return needed[words[0]] in given
+    options = {"figure": "--out", "solve": "--goal", "learn": "--tool", "invent": "--tool"}
+    needed = options.get(words[0])
+    if needed is not None:
+        return needed in given
     incomplete = {
         ("compare",),
         ("experiment",),
