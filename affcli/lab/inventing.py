@@ -34,7 +34,8 @@ def explorer(minutes: float) -> str:
             f"--minutes {minutes:g}: too few to invent anything; give {LEAST_MINUTES:g} or more, "
             "60 for what a tool can do"
         )
-    return f"{EXPLORER}:babbling={minutes * BABBLING!r},composing={minutes * COMPOSING!r}"
+    babbling, composing = (round(minutes * share, 2) for share in (BABBLING, COMPOSING))
+    return f"{EXPLORER}:babbling={babbling!r},composing={composing!r}"
 
 
 @dataclass(frozen=True, slots=True)
