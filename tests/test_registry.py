@@ -208,8 +208,8 @@ def test_what_is_spelled_out_and_is_the_default_changes_no_key() -> None:
 
 
 def test_the_key_of_the_papers_run_stays_the_same_in_every_version() -> None:
-    """Stored runs are found by it: an hour with the T-hook, seed 0. Of another physics it is another
-    run, and that of the first is still named by its own key.
+    """Stored runs are found by it: an hour with the T-hook, seed 0. Of another physics it is
+    another run, and that of the first is still named by its own key.
     """
     assert run_key() == "f535e4103357ecb21cff3c481bc4465248810c6665a90edc31416fe6dc96edb4"
     first = replace(RunParts.chosen(Settings()), world=Component("table"))
