@@ -104,8 +104,7 @@ def _found(kind: Kind, name: str) -> Part | None:
     """Return a part by name, one of ours or else of another package; None when there is none.
 
     Raises:
-        BadInputError: several packages have it.
-        PartFailedError: that of a package cannot be loaded.
+        PartFailedError: that of a package cannot be loaded, or several packages have one.
     """
     own = parts(kind).get(name)
     if own is not None:

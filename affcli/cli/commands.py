@@ -225,43 +225,20 @@ TABLE = Group(
 NEW = Group(
     "new",
     "Write a file or a package to begin with.",
-    (
-        Command(
-            "tool",
-            "new:tool",
-            "Write a tool to begin with: a rake, with what to change said beside it.",
-            "affcli new tool rake",
-        ),
-        Command(
-            "behavior",
-            "new:behavior",
-            "Write a behavior to begin with: what the wrist does, piece after piece.",
-            "affcli new behavior shove",
-        ),
-        Command(
-            "task",
-            "new:task",
-            "Write tasks to begin with: goals, and starts of the attractor.",
-            "affcli new task corner",
-        ),
-        Command(
-            "planner",
-            "new:planner",
-            "Write a package with a planner to begin with: how to choose a row.",
-            "affcli new planner greedy",
-        ),
-        Command(
-            "explorer",
-            "new:explorer",
-            "Write a package with an explorer to begin with: what to try next.",
-            "affcli new explorer in-turn",
-        ),
-        Command(
-            "world",
-            "new:world",
-            "Write a package with a world to begin with: the table, changed.",
-            "affcli new world ice",
-        ),
+    tuple(
+        Command(kind, f"new:{kind}", f"Write {said}.", f"affcli new {kind} {name}")
+        for kind, name, said in (
+            ("tool", "rake", "a tool to begin with: a rake, with what to change said beside it"),
+            (
+                "behavior",
+                "shove",
+                "a behavior to begin with: what the wrist does, piece after piece",
+            ),
+            ("task", "corner", "tasks to begin with: goals, and starts of the attractor"),
+            ("planner", "greedy", "a package with a planner to begin with: how to choose a row"),
+            ("explorer", "in-turn", "a package with an explorer to begin with: what to try next"),
+            ("world", "ice", "a package with a world to begin with: the table, changed"),
+        )
     ),
 )
 

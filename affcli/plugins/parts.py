@@ -34,7 +34,9 @@ from affcli.plugins.hosted import Host
 LONGEST_REASONS = LARGEST_VALUE // 2
 """Letters of a planner's reasons as JSON: they have room in a row of a database."""
 _hosts: list[Host] = []
-"""The processes of the parts that were found."""
+"""The processes of parts."""
+_found: dict[tuple[Kind, str], Part] = {}
+"""The parts that were asked for, by kind and name."""
 
 
 def names(kind: Kind) -> list[str]:
@@ -48,11 +50,14 @@ def find(kind: Kind, name: str) -> Part | None:
     Raises:
         PartFailedError: it cannot be loaded, or several packages offer it.
     """
-    found = [offer for offer in offers(kind) if offer.name == name]
-    if not found:
-        return None
-    _require_one(found[0], found)
-    return part(found[0])
+    # One that was found stays what it is: to look through what is installed takes some 20 ms.
+    if (kind, name) not in _found:
+        found = [offer for offer in offers(kind) if offer.name == name]
+        if not found:
+            return None
+        _require_one(found[0], found)
+        _found[kind, name] = part(found[0])
+    return _found[kind, name]
 
 
 def _require_one(offer: Offer, found: Iterable[Offer]) -> None:
@@ -76,6 +81,7 @@ def forget() -> None:
     """End the processes of all parts, and know none."""
     while _hosts:
         _hosts.pop().end()
+    _found.clear()
     part.cache_clear()
 
 

@@ -15,6 +15,7 @@ from affcli.core.part import Kind
 from affcli.errors import BadInputError, UsageError
 from affcli.lab.learning_run import LearningRun
 from affcli.lab.run_parts import RunParts
+from affcli.plugins import parts
 from tests.cli.program import contents, done, environment, refused, rows
 from tests.plugins.conftest import SHOP, Install
 
@@ -82,8 +83,8 @@ def test_an_explorer_in_its_own_process_is_the_same_and_can_be_gone_on_with(tmp_
 
 @pytest.mark.usefixtures("shop")
 def test_a_run_with_an_explorer_of_a_package_goes_on_as_if_it_had_not_stopped() -> None:
-    parts = RunParts.chosen(Settings(), explorer="rambling", repertoire=["paper", "shove"])
-    spec = parts.spec("stick", 3, 0, None, 24)
+    chosen = RunParts.chosen(Settings(), explorer="rambling", repertoire=["paper", "shove"])
+    spec = chosen.spec("stick", 3, 0, None, 24)
     whole = list(LearningRun(spec).steps())
     begun = LearningRun(spec)
     first = list(islice(begun.steps(), 10))
@@ -166,6 +167,7 @@ def test_the_version_of_the_package_is_part_of_what_it_made(
         text = (SHOP / "shop_of_parts-1.2.dist-info" / name).read_text().replace("1.2", "1.3")
         (newer / "shop_of_parts-1.3.dist-info" / name).write_text(text)
     monkeypatch.syspath_prepend(newer)
+    parts.forget()  # as in another process
     replay = refused(4, "replay", "--run", "1", *db)
     assert (
         f"explorer rambling@{PACKAGE}: this affcli has version 1, from shop-of-parts-1.3" in replay
@@ -182,6 +184,7 @@ def test_without_the_package_its_records_are_shown_and_say_what_they_lack(
     with monkeypatch.context() as installed:
         installed.syspath_prepend(SHOP)
         done("learn", "--tool", "stick", "--behaviors", "20", "--explorer", "rambling", *db)
+    parts.forget()  # as in another process
     assert "rambling" in done("runs", "show", "1", *db).out
     lacking = f"explorer rambling@{PACKAGE}: this affcli has no such part; install what made"
     assert lacking in refused(4, "replay", "--run", "1", *db)
