@@ -28,10 +28,14 @@ def test_a_world_of_a_package_keeps_its_contract_with_all_that_stands_in_it() ->
     assert "learning twice gives the same" in said
 
 
-def test_ours_can_be_checked_too_with_parameters() -> None:
-    shown = done("check", "--part", "binding", "--name", "grasp:angle=20").out
-    assert shown.split()[:2] == ["binding", "grasp:angle=20"]
-    assert "5 of 5 tests passed, 0 failed" in shown
+@pytest.mark.parametrize(
+    ("kind", "name", "tests"),
+    [("binding", "grasp:angle=20", 5), ("task", "anywhere:n=3", 7), ("sensor", "exact", 7)],
+)
+def test_ours_can_be_checked_too_with_parameters(kind: str, name: str, tests: int) -> None:
+    shown = done("check", "--part", kind, "--name", name).out
+    assert shown.split()[:2] == [kind, name]
+    assert f"{tests} of {tests} tests passed, 0 failed" in shown
 
 
 def test_a_test_that_failed_often_is_one_line(install: Install) -> None:
