@@ -18,7 +18,13 @@ from pathlib import Path
 from typing import Any
 
 from affcli.config import toml_file
-from affcli.core.behavior import GRASP, POSITION_WRIST, BehaviorCall, BehaviorName
+from affcli.core.behavior import (
+    GRASP,
+    POSITION_WRIST,
+    BehaviorCall,
+    BehaviorName,
+    composed_motion,
+)
 from affcli.core.behavior import ExploratoryBehavior as Behavior
 from affcli.core.geometry import Pose
 from affcli.core.motion import Carry, Segment, Slide, Turn, Wait
@@ -75,7 +81,9 @@ def require_sound(behavior: Behavior) -> None:
     Raises:
         BadInputError: a name or a segment that cannot be.
     """
-    told = {"behavior": {"name": behavior.call.name}, "segment": [*map(_told, behavior.motion)]}
+    # One that is composed is named by its segments.
+    named = "composed" if composed_motion(behavior.call) else behavior.call.name
+    told = {"behavior": {"name": named}, "segment": [*map(_told, behavior.motion)]}
     behavior_of_tables(told, "it")
 
 

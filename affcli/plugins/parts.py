@@ -13,7 +13,13 @@ from numpy.typing import NDArray
 
 from affcli.bounded import LARGEST_VALUE
 from affcli.core.affordance_table import AffordanceTable
-from affcli.core.behavior import BehaviorCall, repertoire_from_json, repertoire_json
+from affcli.core.behavior import (
+    BehaviorCall,
+    composed,
+    composed_motion,
+    repertoire_from_json,
+    repertoire_json,
+)
 from affcli.core.choice import Candidate, Choice, Reaches, Reason, Situation
 from affcli.core.geometry import Point
 from affcli.core.observation import Observation
@@ -215,7 +221,15 @@ class HostedExplorer:
         for call in self._calls:
             if call == chosen:
                 return call
-        raise self._refused(f"it tries {one_line(chosen, 60)}, which nobody gave it")
+        try:
+            motion = composed_motion(chosen)
+            if motion is None:
+                raise ValueError("not composed of motor schemas")  # noqa: TRY301
+            require_sound_behavior(composed(motion))
+        except (AttributeError, TypeError, ValueError, BadInputError) as error:
+            why = f"it tries {one_line(chosen, 60)}, which nobody gave it: {one_line(error, 60)}"
+            raise self._refused(why) from error
+        return composed(motion).call
 
     def tell(self, record: BabblingRecord) -> None:
         """Tell it what came of that."""

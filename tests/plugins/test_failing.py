@@ -187,6 +187,10 @@ def test_what_a_package_makes_never_reaches_the_engine_unchecked(
     assert "task mine of values-0.1: it makes no tasks: " in refused(4, *solve)
 
 
+COMPOSED = """
+        from affcli.core import behavior as b, motion as m
+        return b.composed((m.Turn(9e9),)).call
+"""
 EXPLORER = """
 from affcli.core.part import Part
 from affcli.exploration.random_babbling import RandomBabbling
@@ -207,6 +211,11 @@ MINE = Part("explorers", "mine", "mine", "a test", Bad)
         ("places", "return [[1.0, 2.0, 3.0]]", "its places are "),
         ("places", "return [[float('nan'), 2.0]]", "its places are "),
         ("behavior", "return 'push'", "it tries push, which nobody gave it"),
+        (
+            "behavior",
+            COMPOSED,
+            "it tries turn 9e+09, which nobody gave it: it: segment 1: turn",
+        ),
         ("state", "return {1: object()}", "its state is "),
     ],
 )

@@ -237,3 +237,25 @@ def test_a_name_of_ours_is_ours_and_of_two_packages_none_is_taken(install: Insta
     assert ended.err.count("affcli has one of that name, which is used") == 2
     assert ended.err.count("uninstall all but one") == 2
     assert json.loads(ended.out)
+
+
+COMPOSING = """
+from affcli.core.behavior import composed
+from affcli.core.motion import Slide, Turn
+from affcli.core.part import Part
+from affcli.exploration.random_babbling import RandomBabbling
+
+class Composing(RandomBabbling):
+    def behavior(self, place, start):
+        return composed((Turn(20.0), Slide(0.0, -3.0))).call
+
+MINE = Part("explorers", "composing", "turns and pulls", "a test", Composing)
+"""
+
+
+def test_an_explorer_of_a_package_may_compose_behaviors(install: Install, tmp_path: Path) -> None:
+    install("composing", COMPOSING, {"explorers": {"composing": "composing:MINE"}})
+    learn = ("learn", "--tool", "t-hook", "--behaviors", "10", "--explorer", "composing")
+    done(*learn, "--db", tmp_path / "own.db")
+    tried = rows(tmp_path / "own.db", "SELECT DISTINCT exploratory_behavior FROM behavior")
+    assert tried == [("turn, slide",)]
