@@ -12,8 +12,8 @@ class PhysicsSettings:
     iterations: int = setting(
         4,
         "",
-        "Sweeps of the impulse solver over all contacts and joints in a step; 3 to 20 agree to "
-        "0.001 in, also for a puck in a hook.",
+        "Sweeps of the impulse solver over all contacts and joints in a short step; a stride of "
+        "several has one more for every two of them. 3 to 20 agree to 0.002 in.",
     )
     collision_slop: float = setting(
         1e-4, "in", "Overlap that the engine leaves; its own default is 0.1.", low=1e-9
