@@ -1,7 +1,7 @@
 """The ``affcli`` program: its help, and how the command that was given is found."""
 
 import shutil
-from functools import partial
+from functools import cached_property, partial
 from importlib import import_module
 from typing import Any
 
@@ -54,8 +54,9 @@ class LazyCommand(TyperCommand):
         self._home = command.home
         self._example = command.example
 
+    @cached_property
     def loaded(self) -> Any:
-        """Import the command's module and return the command, with its options."""
+        """The command with its options; its module is imported when it is first asked for."""
         module, _, function = self._home.partition(":")
         single = typer.Typer(
             add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None
@@ -68,7 +69,7 @@ class LazyCommand(TyperCommand):
 
     def make_context(self, *args: Any, **kwargs: Any) -> Any:
         """Make the context of the imported command."""
-        context = self.loaded().make_context(*args, **kwargs)
+        context = self.loaded.make_context(*args, **kwargs)
         answer_as(context.command_path.removeprefix("affcli "))
         return context
 

@@ -29,7 +29,7 @@ def commands(
         if hasattr(command, "commands"):
             yield from commands(command, (*path, name))
         else:
-            yield (*path, name), command.loaded()
+            yield (*path, name), command.loaded
 
 
 def names_of(command: Any) -> list[str]:

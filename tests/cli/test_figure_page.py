@@ -28,7 +28,7 @@ NOT_DEFAULT = "not default: sensor.position_noise = 0.02"
 
 def commands() -> dict[str, Any]:
     """Return the commands that draw, by name."""
-    return {name: one.loaded() for name, one in program.commands["figure"].commands.items()}
+    return {name: one.loaded for name, one in program.commands["figure"].commands.items()}
 
 
 @pytest.fixture

@@ -169,7 +169,7 @@ def every_command() -> tuple[Command, ...]:
     found: list[Command] = []
 
     def walk(listed: Any, words: tuple[str, ...]) -> None:
-        command = listed if hasattr(listed, "commands") else listed.loaded()
+        command = listed if hasattr(listed, "commands") else listed.loaded
         params = command.params
         options = [
             p for p in params if p.param_type_name == "option" and p.opts[0] not in FOR_THE_SHELL

@@ -9,6 +9,7 @@ import shlex
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -127,13 +128,18 @@ def called(line: str) -> list[str]:
     return [*shlex.split(line), "--db", DATABASE]
 
 
-def commands(group: Any = program, path: tuple[str, ...] = ()) -> Iterator[tuple[str, list[Any]]]:
-    """Yield every command that is asked a database: its name and its parameters."""
+@cache
+def commands() -> tuple[tuple[str, list[Any]], ...]:
+    """Return every command that is asked a database: its name and its parameters."""
+    return tuple(_commands(program, ()))
+
+
+def _commands(group: Any, path: tuple[str, ...]) -> Iterator[tuple[str, list[Any]]]:
     for name, command in group.commands.items():
         if hasattr(command, "commands"):
-            yield from commands(command, (*path, name))
+            yield from _commands(command, (*path, name))
         else:
-            params = command.loaded().params
+            params = command.loaded.params
             if any({"--db", "--into"} & set(one.opts) for one in params):
                 yield " ".join((*path, name)), params
 
