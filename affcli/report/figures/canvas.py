@@ -5,6 +5,7 @@ import math
 import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import lru_cache
 from typing import Any
 
 import matplotlib as mpl
@@ -170,6 +171,7 @@ def drawable(words: str) -> str:
     )
 
 
+@lru_cache(maxsize=1_000)
 def width_of(words: str, size: float) -> float:
     """Return how wide a line of letters of a size is (in)."""
     font = FontProperties(family=FONT, size=size)
