@@ -1,5 +1,6 @@
 """What holds for all tests."""
 
+import gc
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -7,8 +8,14 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from affcli.cli.main import OBJECTS_BETWEEN_COLLECTIONS
+
 DONE = "done"
 """Under this name a test's report says what it did."""
+
+# Python searches for cycles among all objects again and again, and thousands of collected tests are
+# many: rarely while they are made, as the program does, and never among those that are there then.
+gc.set_threshold(OBJECTS_BETWEEN_COLLECTIONS)
 
 # No test is about speed, and the machine may be busy. A property is tried on the same examples each
 # time, so that a change that breaks nothing cannot fail; `--torture` looks for new ones.
@@ -35,6 +42,11 @@ def pytest_configure(config: pytest.Config) -> None:
     """Look for new examples where there is time for it."""
     if config.getoption("--torture"):
         settings.load_profile("new examples")
+
+
+def pytest_collection_finish() -> None:
+    """Leave what was collected out of every later search for cycles."""
+    gc.freeze()
 
 
 @pytest.fixture
