@@ -169,23 +169,31 @@ def ending(process: subprocess.Popen[str], timeout: float = PATIENCE) -> Ended:
     return Ended(process.returncode, out, err)
 
 
-def rows(database: Path, query: str) -> list[tuple[Any, ...]]:
-    """Ask a database without affcli; wait for whoever writes to it."""
+@contextmanager
+def opened(database: Path) -> Iterator[sqlite3.Connection]:
+    """Open a database without affcli; wait for whoever writes to it."""
     # Not read-only: after a kill the file must first be set right from its journal.
     with closing(sqlite3.connect(f"{database.absolute().as_uri()}?mode=rw", uri=True)) as driver:
         driver.execute("PRAGMA busy_timeout = 20000")
+        yield driver
+
+
+def rows(database: Path, query: str) -> list[tuple[Any, ...]]:
+    """Ask a database without affcli; wait for whoever writes to it."""
+    with opened(database) as driver:
         return list(driver.execute(query))
 
 
 def contents(database: Path) -> Contents:
     """Return all that a database holds, table by table, but when it happened, and the last ids."""
     chosen = "type = 'table' AND name <> 'sqlite_sequence'"
-    tables = rows(database, f"SELECT name FROM sqlite_master WHERE {chosen}")
     held: Contents = {}
-    for (table,) in sorted(tables):
-        columns = [name for _, name, *_ in rows(database, f"PRAGMA table_info({table})")]
-        kept = ", ".join(column for column in columns if column not in CLOCKS)
-        held[table] = sorted(rows(database, f"SELECT {kept} FROM {table}"), key=repr)
+    with opened(database) as driver:
+        tables = list(driver.execute(f"SELECT name FROM sqlite_master WHERE {chosen}"))
+        for (table,) in sorted(tables):
+            columns = [name for _, name, *_ in driver.execute(f"PRAGMA table_info({table})")]
+            kept = ", ".join(column for column in columns if column not in CLOCKS)
+            held[table] = sorted(driver.execute(f"SELECT {kept} FROM {table}"), key=repr)
     return held
 
 
