@@ -8,6 +8,8 @@ from matplotlib.figure import Figure, FigureBase
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Bbox
 
+from affcli.report.figures.canvas import lay_out
+
 LAYOUTS = 2
 """Times that a figure is laid out until its height is right."""
 
@@ -71,7 +73,7 @@ def fit_maps(
     # right the panels fill their cells: what stands beside a smaller one would take no room.
     figure.set_figheight(rows * (aspect * figure.get_figwidth() / columns + 0.5) + 2.0)
     for _ in range(LAYOUTS):
-        figure.draw_without_rendering()
+        lay_out(figure)
         cell = one.get_position(original=True).transformed(one.figure.transSubfigure)
         surplus = rows * (cell.height - aspect * cell.width) / figure.dpi
         figure.set_figheight(figure.get_figheight() - surplus)
