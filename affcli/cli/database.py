@@ -15,10 +15,10 @@ from affcli.core.trial import TrialEnd
 from affcli.errors import BadInputError, one_line
 from affcli.lab.suggesting import with_database
 
-MOST_NAMED = 10
-
 MOST_NAMED = 3
 """So many records that cannot be read are named; `affcli db check` finds the others."""
+MOST_FAILED = 10
+"""So many robots that failed are named; `affcli report --json` has all."""
 
 
 @contextmanager
@@ -53,8 +53,8 @@ def say_failed(failed: Sequence[FailedRobot]) -> int:
     """Say which robots failed, if any did; return the exit code."""
     if not failed:
         return 0
-    names = ", ".join(str(one.robot) for one in failed[:MOST_NAMED])
-    more = f" and {len(failed) - MOST_NAMED} more" if len(failed) > MOST_NAMED else ""
+    names = ", ".join(str(one.robot) for one in failed[:MOST_FAILED])
+    more = f" and {len(failed) - MOST_FAILED} more" if len(failed) > MOST_FAILED else ""
     say(f"failed: robot {names}{more}; the same command tries again")
     return BadInputError.exit_code
 
