@@ -186,7 +186,10 @@ BLOCKS = [
     for number, block in enumerate(blocks(readme, "console"))
 ]
 QUOTED_COMMANDS = [command for readme in READMES for command in quoted_commands(readme)]
-RUNNABLE = {re.sub(r"--out \S+", "", c): c for c in QUOTED_COMMANDS if is_whole(c)}.values()
+RUNNABLE = {
+    " ".join(re.sub(r"--(?:out|db) \S+", "", c).split()): c for c in QUOTED_COMMANDS if is_whole(c)
+}.values()
+"""Each once, whatever the name of its file or database."""
 
 
 @pytest.mark.parametrize("block", BLOCKS)

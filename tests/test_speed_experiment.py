@@ -37,13 +37,10 @@ def bench(
 
 
 def test_the_quick_benchmarks_run_and_write_what_they_print(tmp_path: Path) -> None:
+    """And pushes in steps of their own, and those in C, end where ours end."""
     figures, out = bench(tmp_path / "figures.json", *QUICK)
     assert set(figures) == {"machine", *QUICK}
     assert {line.partition(":")[0] for line in out.splitlines()} == set(QUICK)
-
-
-def test_pushes_in_steps_of_their_own_and_in_c_end_where_ours_end(tmp_path: Path) -> None:
-    figures, out = bench(tmp_path / "figures.json", "pushes", "loop")
     assert figures["pushes"]["whole"]["identical"]
     if shutil.which("cc") or shutil.which("gcc"):
         assert figures["loop"]["identical"]

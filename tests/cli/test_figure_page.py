@@ -33,13 +33,16 @@ def commands() -> dict[str, Any]:
 
 @pytest.fixture
 def told(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
-    """What each figure that is written gets over and under it, and of how many pixels."""
+    """What each figure that is written gets over and under it, and of how many pixels.
+
+    Only those of a title that was given are drawn: other tests draw all figures.
+    """
     written: list[dict[str, Any]] = []
     encoded = figures.canvas.encoded
 
     def noted(*args: Any, **words: Any) -> bytes:
         written.append(words)
-        return encoded(*args, **words)
+        return encoded(*args, **words) if words["title"].startswith("Mine") else b"drawn"
 
     monkeypatch.setattr(figures.canvas, "encoded", noted)
     return written
