@@ -18,8 +18,9 @@ DONE = "done"
 gc.set_threshold(OBJECTS_BETWEEN_COLLECTIONS)
 
 # No test is about speed, and the machine may be busy. A property is tried on the same examples each
-# time, so that a change that breaks nothing cannot fail; `--torture` looks for new ones.
-settings.register_profile("same examples", deadline=None, derandomize=True)
+# time, so that a change that breaks nothing cannot fail; `--torture` looks for new ones, and for
+# twice as many.
+settings.register_profile("same examples", deadline=None, derandomize=True, max_examples=50)
 settings.register_profile("new examples", deadline=None)
 settings.load_profile("same examples")
 
