@@ -57,7 +57,7 @@ def test_it_says_what_a_database_was_made_with_each_set_once(used: Path) -> None
     alone = note()
     assert alone.startswith(f"Results made with affcli {__version__}, python ")
     assert "pymunk 7" in alone
-    assert alone.endswith(", world table")
+    assert alone.endswith(", world table@2")
     assert "; and with" not in alone
     assert entries(done("cite", AFFCLI_DB=str(used)).out)["software"]["note"] == alone
     hostile = json.dumps({"affcli": "0.0.9", "x}": "\\input{y} %"})
