@@ -65,7 +65,7 @@ def test_it_says_what_a_database_was_made_with_each_set_once(used: Path) -> None
         driver.execute("UPDATE session SET versions = ? WHERE id = 1", (hostile,))
     both = note()
     assert both.startswith(alone)
-    assert both.removeprefix(alone) == "; and with affcli 0.0.9, x   input y   , world table"
+    assert both.removeprefix(alone) == "; and with affcli 0.0.9, x   input y   , world table@2"
 
 
 def test_a_database_that_is_not_there_is_one_line(tmp_path: Path) -> None:
