@@ -115,7 +115,7 @@ def poor(bytes_: int, *args: Arg) -> Ended:
 def test_learning_on_a_full_disk_keeps_its_chunks_and_goes_on_with_room(tmp_path: Path) -> None:
     database, alone = tmp_path / "my.db", tmp_path / "alone.db"
     learn = ("learn", "--tool", "stick", "--behaviors", "1600")
-    ended = poor(300_000, *learn, "--db", database)
+    ended = poor(500_000, *learn, "--db", database)
     assert (ended.code, ended.out) == (3, "")
     assert "what was saved before is kept" in one_printable_line(ended.err)
     ((kept, status),) = rows(database, "SELECT behaviors, status FROM learning_run")

@@ -128,7 +128,7 @@ def test_tries_and_the_counters_they_change_are_saved_together(store: Store) -> 
     (tried,) = store.verifications.of_row(ids[row.step])
     assert (tried.shape, tried.before, tried.after) == ("l-hook", (1, 1), (2, 2))
     kept = "select world, tries, uses_before, started_at, finished_at, verdict from verification"
-    assert run_sql(store.path, kept).rows == (("table", 1, 3, NOW, LATER, "undecided"),)
+    assert run_sql(store.path, kept).rows == (("table@2", 1, 3, NOW, LATER, "undecided"),)
 
 
 def test_two_planners_and_any_goal_fit_into_a_session(store: Store) -> None:
