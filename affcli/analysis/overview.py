@@ -99,6 +99,7 @@ class Breaking:
         papers: tool, shape, tasks, planner and the parts of learning are the paper's.
         broken, whole: counts of its trials.
         grew: the shape has parts that the tool did not have.
+        finished: all its trials were done; else it was interrupted, or goes on.
     """
 
     session: int
@@ -113,6 +114,7 @@ class Breaking:
     broken: ProtocolCounts
     whole: ProtocolCounts
     grew: bool = False
+    finished: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +124,8 @@ class Overview:
     Args:
         learned: learning runs that stand for themselves, each with its behavior groups.
         solved: successes of their ``solve`` trials.
-        breakings: the ``break-tool`` sessions, oldest first; of the same one done again, the last.
+        breakings: the ``break-tool`` sessions, oldest first; of the same one done again, the last
+            that was finished, or where none was, the last.
         failures: how often each kind of failure occurred in these sessions.
         trials: all trials of these sessions that count.
         reproductions: the finished ones, oldest first.
@@ -185,4 +188,5 @@ def breaking_of(
         broken=counts[Protocol.TOOL_ADAPTATION],
         whole=counts[Protocol.EXTENSION_OF_REACH],
         grew=bool(parts_gained(results[0].learned.held, first.held)),
+        finished=session.status == "done",
     )

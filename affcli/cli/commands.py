@@ -387,8 +387,14 @@ OWN = ("--shard", "--keep")
 """Options that --resume alone does not know, at least before a robot is saved."""
 
 
+BEGINS_ANEW = frozenset({"break-tool"})
+"""Commands whose trials belong together: interrupted, they are done again from the first."""
+
+
 def how_it_goes_on(words: Sequence[str]) -> str:
-    """Return how a command goes on after an interruption, in words after a comma; empty if not."""
+    """Return what to do after an interruption, in words after a comma; empty where nothing is."""
+    if words and words[0] in BEGINS_ANEW:
+        return f", and not all was done: run affcli {words[0]} again, which begins anew"
     if not words or not goes_on(words[0]):
         return ""
     options = {word.partition("=")[0] for word in words}

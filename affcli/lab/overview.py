@@ -33,13 +33,16 @@ def reproduction_of(store: Store, session_id: int) -> Reproduction:
 def overview_of(store: Store) -> Overview:
     """Return what the database holds: learned tools, trials, finished reproductions."""
     runs = [run for run in store.learning.runs() if not _is_twin(store, run)]
-    latest: dict[tuple[object, ...], Breaking] = {}  # of the same one done again, the last
+    latest: dict[tuple[object, ...], Breaking] = {}  # of the same one done again, the last finished
     for session in store.sessions.all("break-tool"):
         losses = {protocol: store.results.losses(session.id, protocol) for protocol in Protocol}
         one = breaking_of(session, store.trials.trials(session_id=session.id), losses)
-        if one is not None:
-            which = (one.run, one.seed, one.tool, one.shape, one.sensor)
-            latest[*which, one.planner, one.task_set] = one
+        if one is None:
+            continue
+        which = (one.run, one.seed, one.tool, one.shape, one.sensor, one.planner, one.task_set)
+        before = latest.get(which)
+        if one.finished or before is None or not before.finished:
+            latest[which] = one
     counted = [s.id for s in store.sessions.all("solve")] + [b.session for b in latest.values()]
     failed = failures_in(store.results.outcome_counts(counted))
     return Overview(

@@ -69,7 +69,7 @@ def _breakings_table(breakings: Sequence[Breaking]) -> Sheet:
         table.add(
             str(breaking.run),
             breaking.tool,
-            f"{breaking.shape} (grew)" if breaking.grew else breaking.shape,
+            f"{breaking.shape}{' (grew)' * breaking.grew}{_unfinished(breaking)}",
             breaking.sensor,
             *(values[number] for values in more.values()),
             _solved(breaking.broken),
@@ -78,6 +78,11 @@ def _breakings_table(breakings: Sequence[Breaking]) -> Sheet:
             str(breaking.broken.rows_excluded),
         )
     return table
+
+
+def _unfinished(breaking: Breaking) -> str:
+    """Return that not all trials were done; empty where they were."""
+    return "" if breaking.finished else " (unfinished)"
 
 
 def _solved(counts: ProtocolCounts) -> str:

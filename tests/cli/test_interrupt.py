@@ -378,3 +378,13 @@ def test_solving_keeps_the_steps_before_it_was_stopped(learned: Path) -> None:
     uses = "SELECT sum(times_used - 1), sum(times_successful - 1) FROM affordance"
     steps = "SELECT count(*), sum(replicated) FROM step"
     assert rows(learned, uses) == rows(learned, steps)
+
+
+@pytest.mark.fault(3)
+def test_a_break_that_was_stopped_says_to_run_it_again(learned: Path) -> None:
+    with started("break-tool", "--db", learned) as process:
+        wait_until(lambda: bool(rows(learned, "SELECT 1 FROM trial LIMIT 1")), process)
+        ended = stopped(process, signal.SIGINT)
+    if not ended.err.startswith("trials 1 to 32 saved"):
+        says = "and not all was done: run affcli break-tool again, which begins anew"
+        assert ended == Ended(130, "", f"affcli: stopped; what was saved is kept, {says}\n")

@@ -225,6 +225,23 @@ def test_a_break_at_other_tasks_leaves_the_paper_s_in_the_report(
     assert "far-corners" in words
 
 
+def test_a_break_that_was_stopped_takes_no_finished_ones_place(
+    store: Store, run: LearningRunInfo
+) -> None:
+    taken(breaking(store, run, "l-hook", 0), 1)
+    (begun,) = overview_of(store).breakings
+    assert (begun.session, begun.broken.trials, begun.finished) == (1, 1, False)
+    assert "l-hook (unfinished)" in drawn(overview_tables(overview_of(store)), 200)
+    counted(breaking(store, run, "l-hook", 0))
+    taken(breaking(store, run, "l-hook", 0), 2)
+    overview = overview_of(store)
+    (whole,) = overview.breakings
+    assert (whole.session, whole.broken.trials, whole.whole.trials) == (2, 16, 16)
+    assert whole.finished
+    assert overview.trials == 32
+    assert "unfinished" not in drawn(overview_tables(overview), 200).split("Tools that broke")[1]
+
+
 def test_without_matplotlib_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     require_figures()
     monkeypatch.setitem(sys.modules, "matplotlib", None)
