@@ -49,11 +49,11 @@ def break_tool(
     sensor: TrialSensor = None,
     database: Database = DEFAULT_DATABASE,
     as_json: AsJson = False,
-) -> None:
+) -> int:
     """Use a broken tool with the table of the whole one: 4 goals x 4 starts.
 
     Every trial starts from the table as learned and leaves the stored counters alone. The same
-    trials are done with the whole tool, to compare.
+    trials are done with the whole tool, to compare. Exit code 4 when no trial counts.
     """
     if becomes and loses:
         raise UsageError("--becomes the tool that is left, or --loses parts: give one of them")
@@ -73,13 +73,15 @@ def break_tool(
         results=lambda: [{"run": used.id, "trials": numbers, **broken_json(used, trials)}],
         tables=lambda: broken_tables(used, trials),
     )
-    say_failures(zip(numbers, (trial.end for trial in trials), strict=True))
+    ends = list(zip(numbers, (trial.end for trial in trials), strict=True))
+    code = say_failures(ends)
     tried_in_vain = [
         number
         for number, trial in zip(numbers, trials, strict=True)
         if any(step.lost for step in trial.steps)
     ]
-    say_trials(numbers, (tried_in_vain or numbers)[0], database)
+    say_trials(ends, (tried_in_vain or numbers)[0], database)
+    return code
 
 
 def _left(used: "LearningSpec", becomes: str | None, loses: Sequence[str]) -> "Tool":

@@ -3,7 +3,7 @@
 SQLAlchemy loads when the database is opened: a command's help does without.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -11,8 +11,8 @@ from affcli import store
 from affcli.cli.options import DEFAULT_TOOL
 from affcli.cli.terminal import say
 from affcli.core.records import FailedRobot
-from affcli.core.trial import TrialEnd
-from affcli.errors import BadInputError, one_line
+from affcli.core.trial import DIVERGED, Outcome, TrialEnd, is_counted
+from affcli.errors import BadInputError, PartFailedError, one_line
 from affcli.lab.suggesting import with_database
 
 MOST_NAMED = 3
@@ -59,16 +59,30 @@ def say_failed(failed: Sequence[FailedRobot]) -> int:
     return BadInputError.exit_code
 
 
-def say_failures(ends: Iterable[tuple[int, TrialEnd]]) -> None:
-    """Say of trials that a part of another package ended which did, and how."""
+def say_failures(ends: Sequence[tuple[int, TrialEnd]]) -> int:
+    """Say of trials that count for nothing how many, which the first is and why, each reason once.
+
+    Args:
+        ends: trials of one command by number.
+
+    Returns:
+        The exit code: another than 0 when no trial counts.
+    """
+    reasons: dict[str, list[int]] = {}
     for number, end in ends:
-        if end.failure:
-            say(f"trial {number} counts for nothing: {one_line(end.failure, 500)}")
+        if end.outcome is Outcome.INVALID:
+            reasons.setdefault(end.failure or DIVERGED, []).append(number)
+    for reason, (first, *more) in reasons.items():
+        which = f"{1 + len(more)} trials, from trial {first} on, count" if more else ""
+        say(f"{which or f'trial {first} counts'} for nothing: {one_line(reason, 500)}")
+    counted = any(is_counted(end.outcome) for _, end in ends)
+    return 0 if counted else PartFailedError.exit_code
 
 
-def say_trials(numbers: Sequence[int], worth_seeing: int, database: Path) -> None:
-    """Say which trials were saved, and how to see one of them."""
-    first, last = numbers[0], numbers[-1]
+def say_trials(ends: Sequence[tuple[int, TrialEnd]], worth_seeing: int, database: Path) -> None:
+    """Say which trials were saved, and how to see one of them, if there is anything to be seen."""
+    first, last = ends[0][0], ends[-1][0]
     which = f"trial {first}" if first == last else f"trials {first} to {last}"
     replay = with_database(f"affcli replay {worth_seeing}", database)
-    say(f"{which} saved; to see why each row was chosen: {replay}")
+    seen = any(end.steps or is_counted(end.outcome) for _, end in ends)
+    say(f"{which} saved" + (f"; to see why each row was chosen: {replay}" if seen else ""))

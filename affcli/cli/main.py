@@ -23,8 +23,8 @@ OUT_OF_MEMORY = "memory ran out; what was saved is kept; ask for less, or leave 
 def main() -> int:
     """Run the program and return its exit code.
 
-    0 ok, 1 the task was not solved, 2 usage, 3 database, 4 bad input, 130/143 interrupted. Only
-    what a user can cause becomes one line on stderr; a bug keeps its traceback.
+    0 ok, 1 the task was not solved, 2 usage, 3 database, 4 bad input or a part that failed, 130/143
+    interrupted. Only what a user can cause becomes one line on stderr; a bug keeps its traceback.
     """
     gc.set_threshold(OBJECTS_BETWEEN_COLLECTIONS)
     prepare_streams()

@@ -66,7 +66,7 @@ def solve(
     """Bring the attractor over a goal region with the tables that were learned.
 
     Every step updates the counters of the row it used in the stored table. Exit code 1 only when a
-    single start was asked for and not solved.
+    single start was asked for and not solved; 4 when no trial counts, because a part failed.
     """
     wanted = lab.solving.WantedTasks(lab.solving.tasks_named(task, goal, count), goal, start)
     trials: list[lab.solving.SolvedTrial] = []
@@ -91,7 +91,7 @@ def solve(
             else tasks_table([one.whole for one in trials], used)
         ],
     )
-    say_failures((one.id, one.end) for one in trials)
-    numbers = [one.id for one in trials]
-    say_trials(numbers, numbers[-1], database)
-    return 0 if start == ALL_STARTS or all(one.solved for one in trials) else 1
+    ends = [(one.id, one.end) for one in trials]
+    code = say_failures(ends)
+    say_trials(ends, ends[-1][0], database)
+    return code or int(start != ALL_STARTS and not all(one.solved for one in trials))

@@ -29,6 +29,10 @@ class Outcome(StrEnum):
     """The simulation diverged, or a part of another package failed: it counts for nothing."""
 
 
+DIVERGED = "the simulation gave a number that is not finite"
+"""Why a trial is invalid that no part of another package ended."""
+
+
 def is_counted(outcome: Outcome | None) -> bool:
     """Tell whether a trial counts: not when it was interrupted, nor when its simulation failed."""
     return outcome not in (None, Outcome.INVALID)

@@ -63,8 +63,11 @@ SOLVE = ("solve", "--goal", "2", "--tool", "t-hook")
 def test_a_trial_that_diverges_is_invalid_and_no_success(number: str, learned: Path) -> None:
     """Its last behavior counts neither for nor against the row that it used."""
     ended = diverging(number, 2, *SOLVE, "--start", "1", "--db", learned)
-    assert ended.code == 1
+    assert ended.code == 4
     assert "invalid (2)" in ended.out
+    said, saved = ended.err.splitlines()
+    assert said == "trial 1 counts for nothing: the simulation gave a number that is not finite"
+    assert saved.startswith("trial 1 saved; to see why each row was chosen: affcli replay 1")
     assert rows(learned, "SELECT outcome, steps FROM trial") == [("invalid", 2)]
     uses = "SELECT sum(times_used - 1), sum(times_successful - 1) FROM affordance"
     assert rows(learned, uses) == rows(learned, "SELECT count(*), sum(replicated) FROM step")
