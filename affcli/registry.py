@@ -183,7 +183,7 @@ def _behaviors(one: str | ExploratoryBehavior) -> Repertoire:
 def require_own_behavior(own: ExploratoryBehavior, source: str) -> None:
     """Make sure that a person's own behavior has no name of ours: BadInputError."""
     if own.call.name.replace(" ", "-") in parts("behaviors"):
-        raise BadInputError(f"{source}: there is a {own.call.name}; give it another name")
+        raise _taken(source, own.call.name, "behaviors")
 
 
 def own_tasks(path: Path) -> "tuple[Task, ...]":
@@ -202,7 +202,12 @@ def own_tasks(path: Path) -> "tuple[Task, ...]":
 def require_own_tasks(own: "tuple[Task, ...]", source: str) -> None:
     """Make sure that a person's own tasks have no name of ours: BadInputError."""
     if own[0].task_set in parts("tasks"):
-        raise BadInputError(f"{source}: there are tasks {own[0].task_set}; give them another name")
+        raise _taken(source, own[0].task_set, "tasks")
+
+
+def _taken(source: str, name: str, kind: Kind) -> BadInputError:
+    """Return the error that a person's own part has a name of ours."""
+    return BadInputError(f"{source}: {name} is one of affcli's own {kind}; give another name")
 
 
 def tool(text: str, geometry: "ToolGeometry") -> Tool:
@@ -250,7 +255,7 @@ def require_own_tool(made: Tool, geometry: "ToolGeometry", source: str) -> None:
 
     for name in parts("tools"):
         if name == made.name:
-            raise BadInputError(f"{source}: there is a {name}; give it another name")
+            raise _taken(source, name, "tools")
         if math.dist(made.color, tool(name, geometry).color) <= COLOR_TOLERANCE:
             raise BadInputError(
                 f"{source}: its color is taken for that of the {name} (it is within "

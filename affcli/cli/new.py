@@ -2,20 +2,25 @@
 
 import json
 import re
+import tomllib
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, cast
+from typing import Annotated, Any, cast
 
 import typer
 
-from affcli import lab, registry
+from affcli import registry
 from affcli.cli.beginnings import FILES, MODULES, PROJECT
 from affcli.cli.files import require_new, save
 from affcli.cli.options import Force
 from affcli.cli.terminal import say
-from affcli.config import load_settings
 from affcli.core.identity import Component
 from affcli.core.part import Kind
+from affcli.core.workspace import ToolGeometry
 from affcli.errors import BadInputError, one_line
+from affcli.own_files.behaviors import behavior_of_tables
+from affcli.own_files.tasks import tasks_of_tables
+from affcli.own_files.tools import tool_of_tables
 from affcli.own_files.words import checked_name
 
 Name = Annotated[str, typer.Argument(help="What it is to be called.", metavar="NAME")]
@@ -58,14 +63,26 @@ def world(name: Name, *, out: OutFolder = None, force: Force = False) -> None:
 
 
 def _write_file(kind: str, name: str, out: Path | None, *, force: bool) -> None:
-    """Write a file of a kind, which is as it must be but where its name is another's."""
+    """Write a file of a kind; its name may be another's, which is said before it is written."""
     called = checked_name(name, "NAME")
     path = out or Path(f"{called.replace(' ', '-')}.toml")
     require_new(path, force=force, endings=(".toml",))
-    words = {"quoted": json.dumps(called, ensure_ascii=False), "file": path.name, "stem": path.stem}
-    save(path, FILES[kind].format(**words).encode())
-    lab.checking.checked(path, load_settings(None, ()))
+    shown = {"file": one_line(path.name), "stem": one_line(path.stem)}
+    words = {"quoted": json.dumps(called, ensure_ascii=False), **shown}
+    text = FILES[kind].format(**words)
+    _require_own(kind, tomllib.loads(text))
+    save(path, text.encode())
     say(f"a {kind} to begin with: {one_line(path)}; see: affcli check {one_line(path)}")
+
+
+def _require_own(kind: str, tables: Mapping[str, Any]) -> None:
+    """Refuse a name that is another's: BadInputError."""
+    if kind == "tool":
+        registry.require_own_tool(tool_of_tables(tables, "NAME"), ToolGeometry(), "NAME")
+    elif kind == "behavior":
+        registry.require_own_behavior(behavior_of_tables(tables, "NAME"), "NAME")
+    else:
+        registry.require_own_tasks(tasks_of_tables(tables, "NAME"), "NAME")
 
 
 def _write_package(kind: str, name: str, out: Path | None, *, force: bool) -> None:

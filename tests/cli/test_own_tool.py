@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.program import done, refused, rows
+from tests.cli.program import done, names_in, refused, rows
 
 
 @pytest.fixture
@@ -128,6 +128,23 @@ def test_places_that_no_tool_reaches_are_named(tmp_path: Path) -> None:
 def test_a_name_with_quotes_is_written_as_toml_has_it(kind: str, tmp_path: Path) -> None:
     done("new", kind, 'so "called"', "--out", "it.toml", cwd=tmp_path)
     assert done("check", "it.toml", "--json", cwd=tmp_path).result["name"] == 'so "called"'
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "says"),
+    [
+        ("tool", "l-hook", "NAME: l-hook is one of affcli's own tools; give another name"),
+        ("behavior", "extend arm", "NAME: extend arm is one of affcli's own behaviors"),
+        ("behavior", "paper", "NAME: paper is one of affcli's own behaviors"),
+        ("behavior", "grasp", "grasp is another one"),
+        ("task", "extension-of-reach", "NAME: extension-of-reach is one of affcli's own tasks"),
+    ],
+)
+def test_a_name_that_is_there_is_refused_before_a_file_is_written(
+    kind: str, name: str, says: str, tmp_path: Path
+) -> None:
+    assert says in refused(4, "new", kind, name, cwd=tmp_path)
+    assert names_in(tmp_path) == []
 
 
 def test_settings_and_experiments_are_checked_too(tmp_path: Path) -> None:

@@ -165,5 +165,5 @@ def test_two_tools_of_one_name_are_refused(file: Path) -> None:
     with pytest.raises(BadInputError, match=r"base.tools: tool ./tools/rake.toml: another tool of"):
         experiment_of_text(file, two)
     (file.parent / "rake.toml").write_text(RAKE.replace('"rake"', '"t-hook"'))
-    with pytest.raises(BadInputError, match=r"tool t-hook: there is a t-hook; give it another"):
+    with pytest.raises(BadInputError, match=r"tool t-hook: t-hook is one of affcli's own"):
         experiment_of_text(file, two)

@@ -101,5 +101,7 @@ def test_what_is_no_number_never_reaches_the_engine(
 
 def test_a_name_of_ours_is_refused(tmp_path: Path) -> None:
     file = written(tmp_path, SHOVE.replace("shove", "extend arm"))
-    with pytest.raises(BadInputError, match="there is a extend arm; give it another name"):
+    with pytest.raises(
+        BadInputError, match="extend arm is one of affcli's own behaviors; give another"
+    ):
         registry.repertoire([str(file)])

@@ -75,5 +75,5 @@ def test_what_is_wrong_is_named_with_its_place(text: str, words: str, tmp_path: 
 
 def test_a_name_of_ours_is_refused(tmp_path: Path) -> None:
     file = written(tmp_path, CORNER.replace('"corner"', '"anywhere"'))
-    with pytest.raises(BadInputError, match="there are tasks anywhere; give them another name"):
+    with pytest.raises(BadInputError, match="anywhere is one of affcli's own tasks; give another"):
         registry.own_tasks(file)

@@ -156,7 +156,7 @@ def test_a_name_that_means_something_else_is_refused(name: str, tmp_path: Path) 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (("rake", "t-hook"), "there is a t-hook; give it another name"),
+        (("rake", "t-hook"), "t-hook is one of affcli's own tools; give another name"),
         (("110, 230, 200", "200, 60, 50"), "its color is taken for that of the stick"),
         (("-1, 0], [1, 0], [1, 2], [-1, 2", "3, -2], [4, -2], [4, 2], [3, 2"), "nothing to grasp"),
     ],
