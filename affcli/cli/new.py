@@ -1,9 +1,12 @@
 """``affcli new``: a file, or a small package, to begin with."""
 
 import json
+import keyword
 import re
+import sys
 import tomllib
 from collections.abc import Mapping
+from importlib.machinery import PathFinder
 from pathlib import Path
 from typing import Annotated, Any, cast
 
@@ -14,6 +17,7 @@ from affcli.cli.beginnings import FILES, MODULES, PROJECT
 from affcli.cli.files import require_new, save
 from affcli.cli.options import Force
 from affcli.cli.terminal import say
+from affcli.config import toml_file
 from affcli.core.identity import Component
 from affcli.core.part import Kind
 from affcli.core.workspace import ToolGeometry
@@ -95,10 +99,18 @@ def _write_package(kind: str, name: str, out: Path | None, *, force: bool) -> No
     texts = {"pyproject.toml": PROJECT, f"{module}.py": MODULES[kind]}
     try:
         folder.mkdir(exist_ok=True)
+        used = any(folder.iterdir())
     except OSError as error:
         raise BadInputError(
             f"{one_line(folder)}: {error.strerror}; name another folder with --out"
         ) from error
+    ours = used and _brings(folder / "pyproject.toml", f"affcli.{kind}s", name)
+    if used and not (ours and force):
+        remedy = ", or give --force" if ours else ""
+        raise BadInputError(
+            f"{one_line(folder)}: exists already and is not empty; name another folder with "
+            f"--out{remedy}"
+        )
     for file in texts:
         require_new(folder / file, force=force)
     for file, text in texts.items():
@@ -108,8 +120,17 @@ def _write_package(kind: str, name: str, out: Path | None, *, force: bool) -> No
     say(f"{one} {kind} to begin with: {where}; then: pip install ./{where} && affcli list {kind}s")
 
 
+def _brings(project: Path, group: str, name: str) -> bool:
+    """Tell whether a project brings a part of this name, as one that was begun here does."""
+    try:
+        told = toml_file(project, one_line(project))["project"]["entry-points"][group]
+        return list(told) == [name]
+    except (BadInputError, LookupError, TypeError):
+        return False  # whatever it is, it is not ours to write over
+
+
 def _require_part_name(kind: Kind, name: str) -> None:
-    """Refuse a name that no part can have, or one of ours has: BadInputError."""
+    """Refuse a name that no part can have, or one of ours, or a module has: BadInputError."""
     try:
         fits = Component.parse(name) == Component(name)
     except BadInputError:
@@ -119,3 +140,10 @@ def _require_part_name(kind: Kind, name: str) -> None:
         raise BadInputError(
             f"NAME = {one_line(name, 60)}: {why}; give it 1 to 40 small letters, digits and dashes"
         )
+    word = name.replace("-", "_")
+    if not word.isidentifier() or keyword.iskeyword(word):
+        raise BadInputError(f"NAME = {name}: no name for a module of Python; give another name")
+    installed = PathFinder.find_spec(word)
+    # A folder without modules, as `new` made it, is found too where Python looks into this one.
+    if word in sys.stdlib_module_names or (installed and installed.origin):
+        raise BadInputError(f"NAME = {name}: Python has a module of that name; give another name")

@@ -57,6 +57,11 @@ def test_pip_installs_it_from_its_folder(tmp_path: Path, monkeypatch: pytest.Mon
         ("a:b=1", "not a name of a part"),
         ("a@2", "not a name of a part"),
         ("a" * 41, "not a name of a part"),
+        ("2x", "no name for a module of Python"),
+        ("class", "no name for a module of Python"),
+        ("json", "Python has a module of that name"),
+        ("numpy", "Python has a module of that name"),
+        ("affcli", "Python has a module of that name"),
     ],
 )
 def test_a_name_that_no_part_can_have_is_refused(name: str, why: str, tmp_path: Path) -> None:
@@ -72,4 +77,9 @@ def test_nothing_is_written_over(tmp_path: Path) -> None:
     done("new", "world", "ice", "--force", cwd=tmp_path)
     assert (tmp_path / "ice" / "affcli_ice.py").read_bytes() == before
     (tmp_path / "file").write_text("")
+    (tmp_path / "src").mkdir()
+    (tmp_path / "src" / "mine.py").write_text("")
+    for words in (("src",), ("b", "--out", "src", "--force"), ("b", "--out", "ice", "--force")):
+        assert "is not empty" in refused(4, "new", "world", *words, cwd=tmp_path)
+    assert names_in(tmp_path / "src") == ["mine.py"]
     assert "name another folder" in refused(4, "new", "world", "b", "--out", "file", cwd=tmp_path)
