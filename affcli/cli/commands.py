@@ -398,7 +398,10 @@ def how_it_goes_on(words: Sequence[str]) -> str:
     if not words or not goes_on(words[0]):
         return ""
     options = {word.partition("=")[0] for word in words}
-    alone = "" if options.intersection(OWN) else " (or: --resume)"
+    # What is invented is a learning run: invent has no --resume of its own.
+    same = " with the same --db" if "--db" in options else ""
+    resume = f"affcli learn --resume{same}" if words[0] == "invent" else "--resume"
+    alone = "" if options.intersection(OWN) else f" (or: {resume})"
     return f", and the same command goes on from there{alone}"
 
 

@@ -114,6 +114,8 @@ def test_resume_alone_is_offered_only_where_it_does_the_same() -> None:
         (["experiment", "a.toml"], f"{same} (or: --resume)"),
         (["experiment", "a.toml", "--shard", "1/2"], same),
         (["experiment", "--keep=rows", "a.toml"], same),
+        (["invent", "--tool", "stick"], f"{same} (or: affcli learn --resume)"),
+        (["invent", "--db", "a.db"], f"{same} (or: affcli learn --resume with the same --db)"),
         (["figure", "curve"], ""),
         ([], ""),
     ):
