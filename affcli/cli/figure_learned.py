@@ -22,10 +22,9 @@ from affcli.cli.options import (
     Database,
     Run,
     check_count,
-    check_if_given,
     checked_count,
     checked_tool,
-    checked_tools,
+    names_given,
 )
 from affcli.config import load_settings
 from affcli.core.identity import canonical_json
@@ -51,7 +50,6 @@ OneTool = Annotated[
         "--tool",
         help="Or the latest run of this tool.",
         metavar="NAME",
-        callback=check_if_given(checked_tool),
     ),
 ]
 
@@ -202,7 +200,7 @@ def learning(
     tool: Annotated[
         list[str] | None,
         typer.Option(
-            "--tool", help="Only runs of this tool.", metavar="NAME", callback=checked_tools
+            "--tool", help="Only runs of this tool.", metavar="NAME", callback=names_given
         ),
     ] = None,
     session: Annotated[
@@ -261,7 +259,7 @@ def _chosen_run(store: "stores.Store", run: int | None, tool: str | None) -> Lea
     if run is not None:
         return store.learning.run(run)
     name = tool or DEFAULT_TOOL
-    unfinished = store.learning.runs(tool=name, status="running")
+    unfinished = [one for one in store.learning.runs(status="running") if one.spec.tool == name]
     if unfinished and store.learning.latest(name) is None:
         number = unfinished[-1].id
         raise UsageError(

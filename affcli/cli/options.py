@@ -139,8 +139,13 @@ def checked_tool(name: str) -> str:
 
 def checked_tools(names: Iterable[str] | None) -> list[str]:
     """Return registered tools, each given by itself or several names with commas, once each."""
+    return list(dict.fromkeys(map(checked_tool, names_given(names))))
+
+
+def names_given(names: Iterable[str] | None) -> list[str]:
+    """Return names, each given by itself or several with commas, once each."""
     given = ([text] if ":" in text else text.split(",") for text in names or ())
-    return list(dict.fromkeys(checked_tool(tool) for several in given for tool in several))
+    return list(dict.fromkeys(name for several in given for name in several))
 
 
 def checked_workers(workers: int | None) -> int:

@@ -13,7 +13,7 @@ from affcli.analysis.paper import trials_words
 from affcli.config import known_settings
 from affcli.core.names import one_of
 from affcli.core.records import LearningRunInfo
-from affcli.errors import UsageError
+from affcli.errors import UsageError, one_line
 from affcli.lab.conditions import Condition, repeated
 from affcli.lab.run_parts import settings_of
 from affcli.store import Store
@@ -113,7 +113,8 @@ def curves_of(
             most = 1.0 if y == "share" else math.inf
             sweeps["", most, name] |= dict.fromkeys(at, reached)
     if not sweeps:
-        with_what = f"with {' or '.join(tools)}; name another tool" if tools else "yet"
+        named = " or ".join(map(one_line, tools))
+        with_what = f"with {named}; name another tool" if tools else "yet"
         raise UsageError(f"no trials {with_what}")
     lines = [
         swept_line(panel, name, own, most, course=by_end and len(own) > 1)

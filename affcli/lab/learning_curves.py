@@ -9,7 +9,7 @@ from affcli.analysis.curves import INTERVALS, Curve, ToolCurves
 from affcli.core.records import LearningRunInfo, SessionInfo
 from affcli.core.results import LearningInterval
 from affcli.core.specs import LIVES
-from affcli.errors import UsageError
+from affcli.errors import UsageError, one_line
 from affcli.report.words import run_words
 from affcli.store import Store
 
@@ -53,7 +53,9 @@ def curves_of_robots(
     stored, used = store.learning.runs(session_id=session_id), store.runs.uses()
     runs = [run for run in stored if run.id in used and (not tools or run.spec.tool in tools)]
     if not runs:
-        raise UsageError(f"--session {session_id}: no robot saved yet; go on with it first")
+        what = f"no robot saved yet with {' or '.join(map(one_line, tools))}; name another tool"
+        what = what if tools else "no robot saved yet; go on with it first"
+        raise UsageError(f"--session {session_id}: {what}")
     seconds = _seconds(runs)
     did = store.results.learning_intervals(seconds, session_id)
     curves: dict[str, list[Curve]] = defaultdict(list)

@@ -35,6 +35,10 @@ def test_a_tool_of_ones_own_is_learned_used_broken_and_replayed(rake: Path) -> N
     assert "did you mean left tine" in refused(
         2, "break-tool", "--tool", "rake", "--loses", "tine", *db
     )
+    for what in ("affordances", "learning"):
+        picture = rake.with_name(f"{what}.svg")
+        done("figure", what, "--tool", "rake", "--out", picture, *db)
+        assert "rake" in picture.read_text().lower()
     broken = done("break-tool", "--tool", "rake", "--json", *db).result  # as its file says
     assert (broken["becomes"], broken["parts_gained"]) == ("rake without left tine", [])
     assert broken["paper"] is None
