@@ -42,19 +42,26 @@ def learned_runs(
     if run is not None:
         chosen = records.learning.run(run)
         if chosen.status != "done":
-            raise UsageError(f"run {run} is not finished; go on with it first: --resume")
+            raise _unfinished(records, chosen)
         if tool not in (None, chosen.spec.tool):
             raise UsageError(f"run {run} is of the {chosen.spec.tool}: leave out --tool")
         if usable:
             require_robot(chosen.spec)
         return [chosen]
-    names = [tool] if tool is not None else _learned_tools(records, usable=usable)
+    names = [one for one in _learned_tools(records, usable=usable) if tool in (None, one)]
     latest = (records.learning.latest(name, usable=usable) for name in names)
     runs = [found for found in latest if found is not None]
     if not runs:
         logs = records.learning.tools() if usable else frozenset()
         logged = logs if tool is None else logs & {tool}
         wanted = "tools" if tool is None else tool
+        unfinished = [
+            one
+            for one in records.learning.runs(status="running")
+            if tool in (None, one.spec.tool) and not logged
+        ]
+        if unfinished:
+            raise _unfinished(records, unfinished[-1])
         if not logged and tool is not None:
             wanted = registry.part("tools", tool).name
         only = " but by robots of a reproduction" if records.sessions.all(*LIVES) else ""
@@ -64,6 +71,15 @@ def learned_runs(
         where = f"in {one_line(records.path)}{only}"
         raise UsageError(f"nothing learned with the {wanted} {where}; first run: {learning}")
     return runs
+
+
+def _unfinished(records: Store, run: LearningRunInfo) -> UsageError:
+    """Return the error that a run has not come to its end."""
+    named, going_on = one_line(run.spec.tool, 60), "affcli learn --resume"
+    return UsageError(
+        f"run {run.id} with the {named} is not finished; go on with it first: "
+        f"{with_database(going_on, records.path)}"
+    )
 
 
 def _learned_tools(records: Store, *, usable: bool) -> list[str]:

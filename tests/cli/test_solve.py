@@ -10,6 +10,7 @@ import pytest
 
 from affcli.simulation.tools.paper import TOOL_PARTS
 from tests.cli.program import affcli, contents, done, refused, rows
+from tests.cli.table_rows import tamper
 
 COUNTERS = "SELECT id, times_used, times_successful FROM affordance ORDER BY id"
 
@@ -177,6 +178,17 @@ def test_an_unfinished_run_is_not_learned(empty: Path) -> None:
     assert "nothing learned with the t-hook" in refused(
         2, "solve", "--goal", "1", "--tool", "t-hook", "--db", empty
     )
+
+
+def test_a_tool_whose_only_run_is_unfinished_is_gone_on_with(learned: Path) -> None:
+    tamper(learned, "UPDATE learning_run SET status = 'running' WHERE tool = 'stick'")
+    goes_on = f"is not finished; go on with it first: affcli learn --resume --db {learned}"
+    for command in (("solve", "--goal", "1"), ("verify",), ("table", "list")):
+        said = refused(2, *command, "--tool", "stick", "--db", learned)
+        assert f"run 2 with the stick {goes_on}" in said
+    assert "no tool '" in refused(2, "solve", "--goal", "1", "--tool", b"\xff", "--db", learned)
+    tamper(learned, "UPDATE learning_run SET status = 'running'")
+    assert goes_on in refused(2, "solve", "--goal", "1", "--db", learned)
 
 
 def test_random_tasks_are_the_same_for_every_planner_and_say_what_they_came_to(
