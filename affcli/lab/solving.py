@@ -67,6 +67,14 @@ class SolvedTrial:
     end: TrialEnd
     steps: tuple[tuple[int, StepRecord], ...]
 
+    def __repr__(self) -> str:
+        """Return what a notebook shows: with rows and observations it is 100,000 letters."""
+        trial, ended = self.trial, self.end.outcome.value
+        return (
+            f"SolvedTrial(id={self.id}, tool={trial.tool!r}, goal={trial.task.goal.name!r}, "
+            f"start={trial.task.start_name!r}, outcome={ended!r}, steps={self.end.steps})"
+        )
+
     @property
     def solved(self) -> bool:
         """Whether the attractor was brought over the goal region."""

@@ -92,6 +92,11 @@ def test_what_robots_solve_is_saved(tmp_path: Path) -> None:
         row[:3] for row in stored
     ]
     assert {row[3] for row in stored} == {"nested-query:share=0.5"}
+    one = trials[0]
+    assert repr(one) == (
+        f"SolvedTrial(id={one.id}, tool='t-hook', goal='2', start={one.trial.task.start_name!r}, "
+        f"outcome={one.end.outcome.value!r}, steps={one.end.steps})"
+    )
     assert {one.solved for one in trials} == {one.end.outcome is Outcome.SOLVED for one in trials}
     assert all(one["equal"] for one in done("replay", "--all", "--json", "--db", lab.path).results)
 
