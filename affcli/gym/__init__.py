@@ -8,7 +8,10 @@ goal; ``affcli/Babble-v0`` is what learning does, with a reward for each row. Wi
 rows of a learned table are the actions.
 """
 
-from gymnasium.envs.registration import register
+try:
+    from gymnasium.envs.registration import register
+except ModuleNotFoundError as error:
+    raise ImportError("affcli.gym needs Gymnasium: pip install 'affcli[gym]'") from error
 
 from affcli.gym.babble import Babble
 from affcli.gym.reach import Reach

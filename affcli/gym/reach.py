@@ -8,8 +8,8 @@ from affcli import registry
 from affcli.core.geometry import Point
 from affcli.core.specs import Counters, Protocol, TrialSpec
 from affcli.core.task import Task
-from affcli.errors import BadInputError, UsageError
-from affcli.gym.table import DIVERGED, FARTHEST, Action, Seen, TableEnv, told_of
+from affcli.errors import UsageError
+from affcli.gym.table import DIVERGED, FARTHEST, Action, OutOfLimitsError, Seen, TableEnv, told_of
 from affcli.lab.run_parts import tasks_of
 
 DENSE = 0.1
@@ -57,7 +57,8 @@ class Reach(TableEnv):
     ) -> tuple[Seen, dict[str, Any]]:
         """Lay out a task."""
         super().reset(seed=seed)
-        task = self._chosen(dict(options or {}))
+        given = dict(options or {})
+        task = self._chosen(given.copy())
         spec = TrialSpec(
             *(Protocol.EXTENSION_OF_REACH, self.learned.tool, self._held, task),
             *(self._drawn_seed(), 0, Counters.AS_LEARNED),
@@ -65,6 +66,8 @@ class Reach(TableEnv):
             *(self.learned.sensor, self.learned.world),
         )
         self._begin(self._world.trial(spec, self.learned))
+        if given.get("attractor") is not None:
+            self._require_within_reach(task.start)
         self._goal = self.setting.sensor.observe_goal()
         self._told = {"tool": self.learned.tool, "goal": task.goal.name, "start": task.start_name}
         return self._observed(), self._information(told_of(self.setting.robot), lost=False)
@@ -79,6 +82,16 @@ class Reach(TableEnv):
         reward = float(solved) + (DENSE * (before - self._distance()) if self._dense else 0.0)
         told = self._information(told, lost=lost)
         return self._observed(), reward, solved or lost or diverged, False, told
+
+    def _require_within_reach(self, attractor: Point) -> None:
+        """Refuse a place of the attractor at which the episode would end: OutOfLimitsError."""
+        if self.setting.experimenter.attractor_out_of_reach():
+            table = self._settings.workspace.table
+            raise OutOfLimitsError(
+                f"reset: attractor [{attractor.x:g}, {attractor.y:g}] is out of reach of the "
+                f"{self._held.name}; the table has x of {-table.half_width:g} to "
+                f"{table.half_width:g} and y of {table.near:g} to {table.far:g} in"
+            )
 
     def _information(self, told: dict[str, Any], *, lost: bool) -> dict[str, Any]:
         """Return what is told of a step beside its reward."""
@@ -127,7 +140,7 @@ class Reach(TableEnv):
 
 
 def _place(given: object, name: str) -> Point | None:
-    """Return a place of the table (in); BadInputError for anything else."""
+    """Return a place of the table (in); OutOfLimitsError for anything else."""
     if given is None:
         return None
     try:
@@ -135,5 +148,5 @@ def _place(given: object, name: str) -> Point | None:
     except (TypeError, ValueError):
         x = y = math.nan
     if not (abs(x) <= FARTHEST and abs(y) <= FARTHEST):
-        raise BadInputError(f"reset: {name} must be [x, y] in inches, each within {FARTHEST:g}")
+        raise OutOfLimitsError(f"reset: {name} must be [x, y] in inches, each within {FARTHEST:g}")
     return Point(x, y)

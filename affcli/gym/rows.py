@@ -1,5 +1,6 @@
 """The rows of a learned table as actions."""
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -8,10 +9,10 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from affcli.core.affordance_table import AffordanceTable
+from affcli.core.affordance_table import COLOR_TOLERANCE, AffordanceTable
 from affcli.errors import UsageError
 from affcli.gym.reach import Reach
-from affcli.gym.table import Action, Seen
+from affcli.gym.table import Action, Seen, within
 from affcli.planning.nested_query import NestedQuery
 from affcli.store import open_store
 
@@ -37,6 +38,13 @@ class RowActions(gymnasium.Wrapper[Seen, Any, Seen, Action]):
             raise UsageError("RowActions is for affcli/Reach-v0")
         if not len(table):
             raise UsageError("a blank table has no actions; learn for longer")
+        learned = env.unwrapped.learned
+        apart = (math.dist(row.start.colors[3:], learned.held.color) for row in table)
+        if all(distance > COLOR_TOLERANCE for distance in apart):
+            raise UsageError(
+                f"no row of the table has the colour of the {learned.tool}: it was learned with "
+                "another tool; make the environment with that one"
+            )
         lacking = {row.exploratory for row in table} - set(env.unwrapped.calls)
         if lacking:
             raise UsageError(
@@ -58,9 +66,10 @@ class RowActions(gymnasium.Wrapper[Seen, Any, Seen, Action]):
 
     def step(self, action: Any) -> tuple[Seen, Any, bool, bool, dict[str, Any]]:
         """Use a row, and count the use."""
-        seen, reward, ended, cut, told = self.env.step(self.table.row(int(action)))
+        position = within("row", action, len(self.table))
+        seen, reward, ended, cut, told = self.env.step(self.table.row(position))
         if self._reach.used is not None:
-            self.table.count_use(int(action), success=self._reach.used.replicated)
+            self.table.count_use(position, success=self._reach.used.replicated)
         return seen, reward, ended, cut, {**told, "action_mask": self._mask()}
 
     def _mask(self) -> NDArray[np.int8]:

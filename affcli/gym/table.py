@@ -25,7 +25,7 @@ from affcli.core.specs import LearningSpec
 from affcli.core.task import GoalRegion
 from affcli.core.trial import Attempt
 from affcli.core.world import Setting
-from affcli.errors import SimulationDivergedError, UsageError
+from affcli.errors import BadInputError, SimulationDivergedError, UsageError
 from affcli.lab.drawing import require_figures
 from affcli.lab.run_parts import RunParts, settings_of, world_of
 from affcli.procedures.attempt import attempt
@@ -45,6 +45,10 @@ MAP_LETTERS = 60, 24
 """Columns and rows of the map that ``ansi`` gives."""
 DIVERGED = "diverged"
 """The status of a step in which the simulation gave a number that is not finite: it ends all."""
+
+
+class OutOfLimitsError(BadInputError, ValueError):
+    """An action or an option of `reset` that cannot be; the message says the limits."""
 
 
 class TableEnv(gymnasium.Env[Seen, Action]):
@@ -208,11 +212,22 @@ class TableEnv(gymnasium.Env[Seen, Action]):
             return action.start.wrist_to_object, action.exploratory
         if isinstance(self.action_space, spaces.Dict):
             x, y = map(float, action["offset"])
-            return Point(x, y), self.calls[int(action["behavior"])]
+            if not (abs(x) <= FARTHEST and abs(y) <= FARTHEST):
+                raise OutOfLimitsError(
+                    f"step: offset must lie within {FARTHEST:g} in: {x:g}, {y:g}"
+                )
+            return Point(x, y), self.calls[within("behavior", action["behavior"], len(self.calls))]
         numbers = np.asarray(action, dtype=float)
         share = 0.5 * (np.clip(numbers[:2], -1.0, 1.0) + 1.0)
         x, y = (self._low + share * (self._high - self._low)).tolist()
         return Point(x, y), self.calls[int(np.argmax(numbers[2:]))]
+
+
+def within(what: str, number: Any, many: int) -> int:
+    """Return a number of 0 to many - 1 that an action gives; else OutOfLimitsError."""
+    if not 0 <= int(number) < many:
+        raise OutOfLimitsError(f"step: {what} {int(number)}: must lie in 0 to {many - 1}")
+    return int(number)
 
 
 def told_of(robot: Robot, behavior: str = "", status: str = "") -> dict[str, Any]:

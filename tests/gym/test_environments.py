@@ -1,8 +1,10 @@
 """The Gymnasium environments keep Gymnasium's rules, and are the table that robots learn at."""
 
 import copy
+import importlib
 import json
 import math
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -179,6 +181,12 @@ def test_rows_that_the_robot_does_not_have_are_refused(database: Path) -> None:
         RowActions(gymnasium.make(BABBLE), table)
     with pytest.raises(UsageError, match="blank table"):
         RowActions(gymnasium.make(REACH), AffordanceTable())
+    with pytest.raises(UsageError, match="no row of the table has the colour of the stick"):
+        RowActions(gymnasium.make(REACH, tool="stick"), table)
+    rows = RowActions(gymnasium.make(REACH), table)
+    rows.reset(seed=0)
+    with pytest.raises(ValueError, match=f"row {len(table)}: must lie in 0 to {len(table) - 1}"):
+        rows.step(len(table))
     with pytest.raises(UsageError, match="no finished learning run 7"):
         learned_table(database, 7)
 
@@ -194,6 +202,7 @@ def test_rows_that_the_robot_does_not_have_are_refused(database: Path) -> None:
         ({}, {"goal": "9"}, "no task with goal 9"),
         ({}, {"attractor": [1]}, "attractor must be [x, y] in inches"),
         ({}, {"attractor": [math.nan, 0]}, "attractor must be [x, y] in inches"),
+        ({}, {"attractor": [100, 100]}, "of the t-hook; the table has x of -16 to 16 and y of "),
         ({}, {"seed": 1}, "reset: no option seed; there are goal, start"),
     ],
 )
@@ -206,6 +215,30 @@ def test_what_cannot_be_is_refused_in_one_line(
     assert str(told.value).isprintable()
     with pytest.raises(UsageError, match="reset the environment first"):
         _ = Babble().seen
+
+
+@pytest.mark.parametrize(
+    ("behavior", "offset", "says"),
+    [
+        (99, [0.0, 10.0], "behavior 99: must lie in 0 to 7"),
+        (-1, [0.0, 10.0], "behavior -1: must lie in 0 to 7"),
+        (0, [math.nan, 10.0], "offset must lie within 100 in"),
+    ],
+)
+def test_an_action_beyond_the_limits_is_refused(
+    behavior: int, offset: list[float], says: str
+) -> None:
+    env = Reach()
+    env.reset(seed=0)
+    with pytest.raises(ValueError, match=says):
+        env.step({"behavior": behavior, "offset": offset})
+
+
+def test_without_gymnasium_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "gymnasium.envs.registration", None)
+    monkeypatch.delitem(sys.modules, "affcli.gym")
+    with pytest.raises(ImportError, match=r"pip install 'affcli\[gym\]'"):
+        importlib.import_module("affcli.gym")
 
 
 def test_its_spec_says_what_it_is() -> None:
