@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from affcli.analysis.paired import Comparison, Counts
 from affcli.core.records import FailedRobot
-from affcli.core.results import Cell
+from affcli.core.results import Cell, InvalidTrials
 from affcli.core.specs import Protocol
 
 
@@ -24,11 +24,18 @@ class Tally(NamedTuple):
 
 
 class ConditionResult(NamedTuple):
-    """What the robots of one condition gave: its name and session, and its trials by kind."""
+    """What the robots of one condition gave.
+
+    Args:
+        name, session: of the condition.
+        tallies: its trials that count, by kind.
+        invalid: those that count for nothing.
+    """
 
     name: str
     session: int
     tallies: Mapping[str, Tally]
+    invalid: InvalidTrials = InvalidTrials()
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from affcli.cli.options import AsJson, Database, Resume, Scheduler, Workers, che
 from affcli.cli.terminal import progress, say, show_either
 from affcli.core.names import one_of
 from affcli.core.specs import Keep
-from affcli.errors import BadInputError, UsageError, one_line
+from affcli.errors import BadInputError, PartFailedError, UsageError, one_line
 from affcli.lab.clock import now
 from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report.experiment import (
@@ -23,6 +23,7 @@ from affcli.report.experiment import (
     cost_table,
     experiment_json,
     experiment_tables,
+    invalid_words,
 )
 
 
@@ -92,7 +93,8 @@ def experiment(
     Conditions are paired robot by robot: what they share is learned once. The result is the same
     for any number of workers. An interrupted experiment goes on when the same command is given
     again, as does the latest one with --resume alone, but for its --shard. A robot that fails three
-    times is named, and the others go on (exit code 4); the same command tries it again.
+    times is named, and the others go on (exit code 4); the same command tries it again. Exit code 4
+    also when no trial of a condition counts, because a part failed.
     """
     pool = checked_pool(workers, scheduler)
     if file is None and (dry_run or not resume):
@@ -118,7 +120,11 @@ def experiment(
         results=lambda: [experiment_json(result)],
         tables=lambda: experiment_tables(result),
     )
-    return say_failed(result.failed)
+    for condition in result.results:
+        if words := invalid_words(condition):
+            say(f"{words}; they stay as stored: another name or --db tries again")
+    nothing_counts = any(one.invalid.trials and not one.tallies for one in result.results)
+    return say_failed(result.failed) or (PartFailedError.exit_code if nothing_counts else 0)
 
 
 def _interrupted(store: "stores.Store", database: Path) -> "lab.experiment.Experiment":

@@ -128,6 +128,13 @@ class TrialGroup:
     steps: tuple[StepSums, ...]
 
 
+class InvalidTrials(NamedTuple):
+    """Trials of a session that count for nothing (see `Outcome`): how many, and why the first."""
+
+    trials: int = 0
+    why: str = ""
+
+
 class Cell(NamedTuple):
     """Which trials are counted together; empty where it makes no difference."""
 

@@ -118,7 +118,8 @@ def compared(
         by: keys of `BY`.
 
     Raises:
-        UsageError: there is no such condition, or one has no robot in common with it.
+        UsageError: there is no such condition, or one has no trial that counts, or no robot in
+            common with it.
     """
     names = [condition.name for condition in conditions]
     first = names.index(one_of("condition", against, names)) if against is not None else 0
@@ -126,6 +127,8 @@ def compared(
     for other in others:
         if not in_common(base, other):
             seeds = {base.session.spec.seed, other.session.spec.seed}
+            for one in (base, other) if len(seeds) == 1 else ():
+                _require_counted(store, one)
             why = f"of seeds {' and '.join(map(str, sorted(seeds)))}" if len(seeds) > 1 else "apart"
             raise UsageError(
                 f"{base.name} and {other.name} have no robot in common: they are {why}; give both "
@@ -139,6 +142,23 @@ def compared(
                 "same tools and tasks"
             )
     return result
+
+
+def _require_counted(store: Store, one: ConditionCounts) -> None:
+    """Raise UsageError, with the reason and the remedy, when no trial of a condition counts."""
+    if one.cells:
+        return
+    trials, why = store.results.invalid(one.session.id)
+    if trials:
+        told = f"all {trials} are invalid ({why}): what is stored stays; repair that, and "
+        again = "take another --db"
+        if one.session.experiment_id is not None:
+            again = "give the experiment another name or --db"
+    elif one.failed:
+        told, again = "its robots failed; ", "the same command tries them again"
+    else:
+        told, again = "it has none; ", "name another"
+    raise UsageError(f"{one_line(one.name)} has no trial that counts: {told}{again}")
 
 
 def _first(conditions: Sequence[Condition], first: int) -> list[Condition]:
@@ -191,9 +211,10 @@ def planned(
         ]
         unshared = [Untold(c, "not in both") for own in result.unshared.values() for c in own]
     else:
-        own, fields = counts_of(store, conditions[0]).cells, _fields(by)
+        alone, fields = counts_of(store, conditions[0]), _fields(by)
+        _require_counted(store, alone)
         parts = [
-            {cell: tuple(all_tried(counts)) for cell, counts in summed(own, told).items()}
+            {cell: tuple(all_tried(counts)) for cell, counts in summed(alone.cells, told).items()}
             for told in ((), *([fields] if fields else []))
         ]
     found = [

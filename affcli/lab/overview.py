@@ -76,7 +76,12 @@ def experiment_of(store: Store, info: ExperimentInfo) -> ExperimentResult:
         len(store.sessions.saved_robots(first)),
         store.experiments.learned().get(info.name, 0),
         [
-            ConditionResult(name, session, tallies(store.results.solved_by_cell(session, ())))
+            ConditionResult(
+                name,
+                session,
+                tallies(store.results.solved_by_cell(session, ())),
+                store.results.invalid(session),
+            )
             for name, session in info.conditions
         ],
         store.sessions.failed_robots(first),

@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from statistics import fmean
 from typing import Any, NamedTuple
 
-from affcli.analysis.experiment import ExperimentResult, Tally
+from affcli.analysis.experiment import ConditionResult, ExperimentResult, Tally
 from affcli.core.records import FailedRobot
+from affcli.errors import one_line
 from affcli.report.sheet import Sheet
 from affcli.report.words import clock, many
 
@@ -84,6 +85,8 @@ def experiment_json(one: ExperimentResult) -> dict[str, Any]:
                     }
                     for kind, tally in condition.tallies.items()
                 },
+                "invalid": condition.invalid.trials,
+                "why_invalid": condition.invalid.why,
             }
             for condition in one.results
         ],
@@ -112,18 +115,30 @@ def failed_tables(failed: Sequence[FailedRobot]) -> list[Sheet]:
     return [table] if failed else []
 
 
+def invalid_words(condition: ConditionResult) -> str:
+    """Return how many trials of a condition count for nothing, and why; empty if all count."""
+    trials, why = condition.invalid
+    if not trials:
+        return ""
+    which = many(trials, "trial") if condition.tallies else f"all {many(trials, 'trial')}"
+    verb = "counts" if trials == 1 else "count"
+    return one_line(f"{condition.name}: {which} {verb} for nothing: {why}", 500)
+
+
 def experiment_tables(one: ExperimentResult) -> list[Sheet]:
     """Return the mean of the successes under each condition by kind of trials; who failed."""
     kinds = tuple(dict.fromkeys(kind for condition in one.results for kind in condition.tallies))
+    invalid = [words for condition in one.results if (words := invalid_words(condition))]
     table = Sheet(
-        ("condition", "session", *kinds),
+        ("condition", "session", *kinds, *(("invalid",) if invalid else ())),
         title=f"{one.name}: solved, mean of {many(one.robots, 'robot')}",
-        caption=one.question,
+        caption="\n".join((one.question, *invalid)),
         left=("condition",),
     )
     for condition in one.results:
-        cells = (_cell(condition.tallies.get(kind)) for kind in kinds)
-        table.add(condition.name, str(condition.session), *cells)
+        cells = [_cell(condition.tallies.get(kind)) for kind in kinds]
+        beside = (str(condition.invalid.trials),) if invalid else ()
+        table.add(condition.name, str(condition.session), *cells, *beside)
     return [table, *failed_tables(one.failed)]
 
 

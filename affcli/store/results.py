@@ -11,6 +11,7 @@ from affcli.core.effects import Effect, Way
 from affcli.core.results import (
     BehaviorGroup,
     Cell,
+    InvalidTrials,
     LearningInterval,
     StepSums,
     SuccessCount,
@@ -18,11 +19,11 @@ from affcli.core.results import (
     VerificationResult,
 )
 from affcli.core.specs import Protocol
-from affcli.core.trial import Outcome, is_counted
+from affcli.core.trial import DIVERGED, Outcome, is_counted
 from affcli.store.connection import Database, tuples
 from affcli.store.keeping import require_kept
 from affcli.store.learning import used_in
-from affcli.store.reading import behavior_call, reading_what_was_written
+from affcli.store.reading import behavior_call, reading_what_was_written, reasons
 from affcli.store.tables import (
     affordance,
     behavior,
@@ -202,6 +203,20 @@ class Results:
         )
         with reading_what_was_written("a trial"):
             return {Outcome(outcome): count for outcome, count in self._all(wanted)}
+
+    def invalid(self, session_id: int) -> InvalidTrials:
+        """Return how many trials of a session count for nothing, and why the first of them does."""
+        t = trial.c
+        # SQLite takes what stands beside a minimum from the row that has it.
+        wanted = sa.select(sa.func.count(), sa.func.min(t.id), t.last_reasons).where(
+            t.session_id == session_id, t.outcome == Outcome.INVALID.value
+        )
+        ((trials, first, told),) = self._all(wanted)
+        if not trials:
+            return InvalidTrials()
+        with reading_what_was_written(f"trial {first}"):
+            said = reasons(told) if told else ()
+        return InvalidTrials(trials, said[0].name if said else DIVERGED)
 
     def losses(self, session_id: int, protocol: Protocol) -> tuple[int, int]:
         """Return what a session's trials of a protocol that count made of the rows they tried.

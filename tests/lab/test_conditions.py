@@ -147,6 +147,25 @@ def test_what_cannot_be_compared_is_named(store: Store) -> None:
         sessions_named(store, [first, unfinished])
 
 
+def test_a_condition_without_a_trial_that_counts_says_why(store: Store) -> None:
+    conditions = sessions_named(store, stored_conditions(store, 2, conditions=2))
+    first = conditions[0].session.id
+    assert store.results.invalid(first) == (0, "")
+    of_first = sa.update(trial).where(trial.c.session_id == first)
+    with store.database.writing() as connection:
+        connection.execute(of_first.values(outcome=Outcome.INVALID.value, last_reasons=None))
+    found = store.results.invalid(first)
+    assert found.why == "the simulation gave a number that is not finite"
+    assert found.trials == len(store.trials.trials(session_id=first))
+    for chosen in (conditions, conditions[:1]):
+        with pytest.raises(UsageError) as refused:
+            planned(store, chosen, (), (1.0,), 0.0, 0.8)
+        assert str(refused.value) == (
+            f"session 1 has no trial that counts: all {found.trials} are invalid ({found.why}): "
+            "what is stored stays; repair that, and take another --db"
+        )
+
+
 def test_robots_needed_are_told_from_pairs_or_from_one_condition(store: Store) -> None:
     conditions = sessions_named(store, stored_conditions(store))
     plans, untold = planned(store, conditions[:2], ("tool",), (1.0,), 0.0, 0.8)

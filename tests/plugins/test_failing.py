@@ -94,6 +94,53 @@ def test_a_trial_that_failed_is_explained_left_out_done_again_and_shown(
     assert "ZeroDivisionError" in (tmp_path / "page.html").read_text()
 
 
+EXPERIMENT = """
+[experiment]
+name = "two"
+question = "Does the planner matter?"
+robots = 1
+[base]
+minutes = 2
+tools = ["t-hook"]
+trial.max_steps = 2
+[[condition]]
+name = "paper"
+[[condition]]
+name = "own"
+planner = "mine"
+"""
+
+
+@pytest.mark.fault(28)
+def test_a_condition_without_a_trial_that_counts_is_named_with_the_reason(
+    install: Install, tmp_path: Path
+) -> None:
+    text = PLANNER.format(does="return 1 / 0")
+    install("bad_one", text, {"planners": {"mine": "bad_one:MINE"}})
+    file, db = tmp_path / "two.toml", ("--db", tmp_path / "two.db")
+    file.write_text(EXPERIMENT)
+    why = "planner mine of bad-one-0.1: ZeroDivisionError: division by zero (bad_one.py, line 9)"
+    words = f"own: all 32 trials count for nothing: {why}"
+    ended = affcli("experiment", file, "--workers", "1", *db)
+    _, said = ended.err.splitlines()
+    assert said == f"{words}; they stay as stored: another name or --db tries again"
+    assert ended.code == 4
+    for shown in (ended.out, done("report", *db).out):
+        assert words in " ".join(shown.split())
+        heading, _, paper, own, *_ = shown.partition("two: solved, mean of")[2].splitlines()[1:]
+        assert heading.split()[-1] == "invalid"
+        assert (paper.split()[0], paper.split()[-1]) == ("paper", "0")
+        assert (own.split()[0], own.split()[-2:]) == ("own", ["-", "32"])
+    again = affcli("experiment", file, "--json", *db)
+    assert (again.code, again.err.splitlines()[-1]) == (4, said)
+    invalid = [(one["invalid"], one["why_invalid"]) for one in again.result["conditions"]]
+    assert invalid == [(0, ""), (32, why)]
+    refusal = f"own has no trial that counts: all 32 are invalid ({why}): what is stored stays; "
+    refusal += "repair that, and give the experiment another name or --db"
+    for command in (("compare", "two"), ("power", "two"), ("power", "--session", "2")):
+        assert refused(2, *command, *db) == f"affcli: {refusal}"
+
+
 LOADING = {
     "import": ("import nothing_that_is_here", "ModuleNotFoundError: No module named 'nothing_"),
     "syntax": ("def (", "SyntaxError: "),
