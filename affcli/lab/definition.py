@@ -120,7 +120,8 @@ def experiment_of(tables: Mapping[str, Any], source: str, folder: Path | None = 
                         f"the name {one_line(title, 200)} has more than {LONGEST_NAME} letters; "
                         "give the condition a shorter one, or sweep fewer things at once"
                     )
-                condition, form = _condition(title, shared | said | point, own_parts)
+                with _of_condition(own):
+                    condition, form = _condition(title, shared | said | point, own_parts)
                 _require_new(condition, there)
             conditions.append(condition)
             forms.append(form)
@@ -145,6 +146,16 @@ def _at(place: str) -> Iterator[None]:
     except (BadInputError, UsageError) as error:
         # A key is a part of the place; a word that is said of the place stands after it.
         raise BadInputError(f"{place}: {error}") from error
+
+
+@contextmanager
+def _of_condition(name: str) -> Iterator[None]:
+    """Say in which condition something is wrong: its place is counted from 0, its name is not."""
+    try:
+        yield
+    except (BadInputError, UsageError) as error:
+        named = f"; in condition {one_line(name, 60)}" if name else ""
+        raise BadInputError(f"{error}{named}") from error
 
 
 def _table(tables: Mapping[str, Any], name: str) -> Mapping[str, Any]:
@@ -193,7 +204,8 @@ def _named_conditions(
         with _at(place):
             name = _text(table.get("name"), "name", LONGEST_NAME)
         own = {key: value for key, value in table.items() if key != "name"}
-        said = _said(own, place, own_parts)
+        with _of_condition(name):
+            said = _said(own, place, own_parts)
         named.append((place, name, said))
     return named or [(source, "", {})]
 

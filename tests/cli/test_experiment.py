@@ -218,7 +218,7 @@ def test_what_is_wrong_is_one_line(file: Path, tmp_path: Path) -> None:
     line = refused(4, "experiment", file, cwd=tmp_path)
     assert line == (
         f"affcli: experiment {file}: condition[1].planner: no planner 'lookahed'; did you mean "
-        "lookahead or oracle? (affcli list planners)"
+        "lookahead or oracle? (affcli list planners); in condition rough"
     )
     assert names_in(tmp_path) == ["two.toml"]
 
