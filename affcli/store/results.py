@@ -36,8 +36,9 @@ from affcli.store.tables import (
 
 COUNTED = [outcome.value for outcome in Outcome if is_counted(outcome)]
 """How trials end that count."""
-ROBOTS_IN_A_LIST = 10
-"""Trials of so many robots are one value of a row, far from what it may have (affcli.bounded)."""
+ROBOTS_IN_A_LIST, ROBOTS_WITH_MANY = 1_000, 10
+"""So many robots are one value of a row, far from what it may have (affcli.bounded): where all is
+told apart, so that a robot has one trial of a cell; and where it may have a thousand."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +134,9 @@ class Results:
         names = ["protocol", "task_set", *by]
         columns = [t[name] for name in names]
         # Robots in lists: a row a robot and cell would take three times as long.
-        block = sa.cast(t.robot / sa.literal_column(str(ROBOTS_IN_A_LIST)), sa.Integer)
+        one_each = {"tool", "shape", "goal", "start"} <= set(by)
+        robots_in = ROBOTS_IN_A_LIST if one_each else ROBOTS_WITH_MANY
+        block = sa.cast(t.robot / sa.literal_column(str(robots_in)), sa.Integer)
         was_solved = sa.cast(t.outcome == Outcome.SOLVED.value, sa.Integer)
         lists = [sa.func.group_concat(one) for one in (t.robot, was_solved)]
         wanted = (
