@@ -82,16 +82,7 @@ def curves_of(
         ]
         return Curves(lines, TIME[x], MEASURES[y])
     if by_end:
-        minutes = [_minutes(store, one) for one in conditions]
-        known = [one for one in minutes if one is not None]
-        if not known:
-            raise UsageError(f"{conditions[0].name}: nothing learned; name another session")
-        # What a condition gives that learns nothing is a level, whatever the others learned.
-        ends = (min(known), max(known))
-        places = [
-            (_name_beside(one.name, x), ends if own is None else (own,))
-            for one, own in zip(conditions, minutes, strict=True)
-        ]
+        places = _lengths(store, conditions)
     # How many rows there are nobody chose: along them each condition is a mark by itself.
     places = places or [
         (one.name, (math.fsum(getattr(course, x)[-1] for course in own.values()) / len(own),))
@@ -121,6 +112,22 @@ def curves_of(
         for (panel, most, name), own in sweeps.items()
     ]
     return Curves(lines, TIME.get(x) or _setting_words(x), MEASURES[y])
+
+
+def _lengths(store: Store, conditions: Sequence[Condition]) -> list[tuple[str, Sequence[float]]]:
+    """Return for each condition the name of its line, and how long its robots learned (min).
+
+    What a condition gives that learns nothing is a level: it stands at both ends of the others.
+    """
+    minutes = [_minutes(store, one) for one in conditions]
+    known = [one for one in minutes if one is not None]
+    if not known:
+        raise UsageError(f"{conditions[0].name}: nothing learned; name another session")
+    ends = (min(known), max(known))
+    return [
+        (_name_beside(one.name, "minutes"), ends if own is None else (own,))
+        for one, own in zip(conditions, minutes, strict=True)
+    ]
 
 
 def _of_trials(
