@@ -1,11 +1,10 @@
 """Where the attractor can be to the wrist and not be: what tries tell of the tool's contacts.
 
-An occupancy grid (Moravec and Elfes 1985) in the wrist's frame. A cell is where the attractor's
+An occupancy grid (Moravec and Elfes 1985) in the frame of the hand. A cell is where the attractor's
 centre is; "contact" means that a tool which comes on pushes it. The robot feels along the tool with
 the attractor: it needs no shape.
 """
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -15,6 +14,7 @@ from affcli.core.babbling_box import BabblingSettings
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.geometry import Point
 from affcli.exploration.grid import Grid, read, written
+from affcli.exploration.way import Way
 
 UNKNOWN, CLEAR, NEAR, CONTACT = range(4)
 """What is known of a cell: nothing; the attractor was there and was not pushed; a contact is near;
@@ -64,26 +64,25 @@ class ContactMap:
         self._mark(place, AROUND_BLOCKED)
         self._known[self.grid.cells(*place)] = CONTACT
 
-    def passed(self, place: Point, travel: Point) -> None:
+    def passed(self, place: Point, way: Way) -> None:
         """Learn from a behavior that did not move the attractor.
 
         Args:
             place: where the attractor stood to the wrist (in).
-            travel: how far the wrist truly went (in).
+            way: how the wrist truly went.
         """
-        self._clear(place, travel, math.hypot(*travel) - MOVEMENT_THRESHOLD)
+        self._clear(place, way, way.length(place) - MOVEMENT_THRESHOLD)
 
-    def pushed(self, place: Point, travel: Point, moved: float) -> None:
+    def pushed(self, place: Point, way: Way, moved: float) -> None:
         """Learn from a behavior that moved the attractor by so much (in): it was met that long
         before the end.
         """
-        length = math.hypot(*travel)
+        length = way.length(place)
         gap = max(0.0, length - moved)
-        self._clear(place, travel, gap - MOVEMENT_THRESHOLD)
+        self._clear(place, way, gap - MOVEMENT_THRESHOLD)
         if length > 0.0:
-            share = (gap + DEPTH) / length
-            at = Point(place.x - share * travel.x, place.y - share * travel.y)
-            self._mark(at, AROUND_CONTACT)
+            x, y = way.standing(place, np.array((gap + DEPTH) / length))
+            self._mark(Point(float(x), float(y)), AROUND_CONTACT)
 
     def state(self) -> list[str]:
         """Return what is known as texts."""
@@ -93,13 +92,12 @@ class ContactMap:
         """Know what `state` said; ValueError or TypeError for anything else."""
         self._known = read(state, self.grid.shape, CONTACT)
 
-    def _clear(self, place: Point, travel: Point, far: float) -> None:
+    def _clear(self, place: Point, way: Way, far: float) -> None:
         """Learn that an attractor was not met in the first part of a way (in)."""
-        length = math.hypot(*travel)
+        length = way.length(place)
         if far >= 0.0 and length > 0.0:
             share = np.arange(0.0, far + 1e-9, self.grid.cell) / length
-            way = place.x - share * travel.x, place.y - share * travel.y
-            self._known[self.grid.cells(*way)] = CLEAR
+            self._known[self.grid.cells(*way.standing(place, share))] = CLEAR
 
     def _mark(self, place: Point, around: int) -> None:
         """Learn of contact in a cell and near it; what was found clear stays clear."""

@@ -10,6 +10,7 @@ from affcli.core.choice import Reaches
 from affcli.core.observation import Observation
 from affcli.exploration.grid import Cells
 from affcli.exploration.memory import Memory
+from affcli.exploration.way import turned
 
 Numbers = NDArray[np.float64]
 
@@ -26,6 +27,8 @@ class Tries:
         call: which behavior, by its position (n,).
         x, y: where the attractor stands to the wrist when it begins (n,), in.
         travel: how the wrist would move (n, 2), in, table frame; 0 while that is not known.
+        turn: by how much it would turn (n,), rad; 0 while that is not known.
+        length: how far the tool would move where the attractor stands (n,), in.
         distance: of the steps from the beginning (k,), in.
         open: whether an attractor met there would be seen to move: the arm reaches on (n, k).
         cells: of the map of contacts, where the attractor is then (n, k).
@@ -35,6 +38,8 @@ class Tries:
     x: Numbers
     y: Numbers
     travel: Numbers
+    turn: Numbers
+    length: Numbers
     distance: Numbers
     open: NDArray[np.bool_]
     cells: Cells
@@ -57,20 +62,23 @@ class Tries:
             seen: the latest observation.
             reaches: which wrist positions can be taken up.
         """
-        travel, (x, y) = memory.travel[call], place.T
-        length = np.hypot(*travel.T)
+        ways = np.array([[*way.travel, way.turn] for way in memory.ways])[call]
+        travel, turn, (x, y) = ways[:, :2], ways[:, 2], place.T
+        length = np.hypot(*travel.T) + np.abs(turn) * np.hypot(x, y)
         distance = STEP * np.arange(int(length.max() / STEP) + 2.0)
         share = distance / np.where(length > 0.0, length, 1.0)[:, None]
         gone_x, gone_y = share * travel[:, :1], share * travel[:, 1:]
+        angle = share * turn[:, None]
         wrist_x = (seen.object_x - x)[:, None] + gone_x
         wrist_y = (seen.object_y - y)[:, None] + gone_y
-        x_on, y_on = wrist_x.ravel(), wrist_y.ravel()
-        held = reaches(x_on, y_on, np.zeros(len(x_on))).reshape(share.shape)
+        held = reaches(wrist_x.ravel(), wrist_y.ravel(), angle.ravel()).reshape(share.shape)
         held = np.logical_and.accumulate(held, axis=1)
         on = np.zeros_like(held)
         on[:, :-1] = held[:, 1:] & (distance[1:] <= length[:, None] + 1e-9)
-        cells = memory.contacts.grid.cells(x[:, None] - gone_x, y[:, None] - gone_y)
-        return cls(call, x, y, travel, distance, on, cells)
+        cells = memory.contacts.grid.cells(
+            *turned(x[:, None] - gone_x, y[:, None] - gone_y, -angle)
+        )
+        return cls(call, x, y, travel, turn, length, distance, on, cells)
 
     def effect(self, contact: Numbers) -> Numbers:
         """Return the probability that T = 1 (n,), from that of contact in each cell of the map."""
@@ -82,11 +90,26 @@ class Tries:
         the wrist, from where it is met, by the probability of contact in each cell of the map.
         """
         met = -np.diff(self._missed(contact), axis=1, prepend=1.0)
-        length = np.hypot(*self.travel.T)
+        length = self.length
         left = np.cumsum(met * (length[:, None] - self.distance), axis=1)[:, -1]
         share: Numbers = left / np.where(length > 0.0, length, 1.0)
         moved: Numbers = self.travel * share[:, None]
+        if self.turn.any():
+            moved += self._swung(met)
         return moved
+
+    def _swung(self, met: Numbers) -> Numbers:
+        """Return how far the attractor is expected to be carried about the wrist by turns (n, 2)
+        (in, table frame), by the probability that it is met at each step (n, k).
+        """
+        gone = self.distance / np.where(self.length > 0.0, self.length, 1.0)[:, None]
+        x = self.x[:, None] - gone * self.travel[:, :1]
+        y = self.y[:, None] - gone * self.travel[:, 1:]
+        end_x, end_y = turned(x, y, (1.0 - gone) * self.turn[:, None])
+        swung: Numbers = np.stack(
+            [(met * (end - begin)).sum(axis=1) for end, begin in ((end_x, x), (end_y, y))], axis=1
+        )
+        return swung
 
     def _missed(self, contact: Numbers) -> Numbers:
         """Return the probability that the attractor is not met up to each step (n, k)."""
