@@ -4,6 +4,7 @@ import os
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from numbers import Real
 from pathlib import Path
 
 from affcli import lab, registry
@@ -378,9 +379,14 @@ class Laboratory:
             warnings.warn(f"left out: {line}", stacklevel=4)
 
 
+def _is_number(value: object) -> bool:
+    """Tell whether a value that a program gave is one, whatever its signature says."""
+    return isinstance(value, Real)
+
+
 def _within(name: str, value: float, most: float) -> float:
     """Return a length of a run; BadInputError when it is none."""
-    if not 0.0 < value <= most:
+    if not _is_number(value) or not 0.0 < value <= most:
         said = one_line(value, 40)
         raise BadInputError(f"{name} = {said}: must be more than 0, at most {most:g}")
     return value
@@ -388,7 +394,7 @@ def _within(name: str, value: float, most: float) -> float:
 
 def _whole(name: str, value: float, least: int, most: int) -> int:
     """Return a whole number; BadInputError when it is none, or not within its limits."""
-    if not least <= value <= most or value != int(value):
+    if not _is_number(value) or not least <= value <= most or value != int(value):
         said = one_line(value, 40)
         raise BadInputError(f"{name} = {said}: must be a whole number, {least} to {most}")
     return int(value)

@@ -59,13 +59,15 @@ class _Onlooker:
         """Choose as the other does, and remember what came close."""
         self.reel.cut()
         self.seen, self.goal = situation.seen, situation.goal
+        # First, as in the trial: where it fails there, it fails here alike.
+        choice = self._planner.choose(situation)
         close = self.candidates(situation)[:CLOSE]
         rows = [situation.table.row(one.position) for one in close]
         self.considered = tuple(
             Considered(self._ids[row.step], row, one.expected_distance, one.repositioning)
             for row, one in zip(rows, close, strict=True)
         )
-        return self._planner.choose(situation)
+        return choice
 
 
 def replay_trial(store: Store, trial_id: int) -> Replay:

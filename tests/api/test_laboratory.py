@@ -144,6 +144,8 @@ def test_a_log_is_imported(tmp_path: Path) -> None:
         (lambda lab: lab.learn("stick", hours=1, minutes=1), affcli.UsageError, "give one of"),
         (lambda lab: lab.learn("stick", hours=0), affcli.BadInputError, "hours = 0: must be"),
         (lambda lab: lab.learn("stick", minutes=float("nan")), affcli.BadInputError, "minutes"),
+        (lambda lab: lab.learn("stick", minutes="1"), affcli.BadInputError, "minutes = 1: must be"),
+        (lambda lab: lab.learn("stick", seed="1"), affcli.BadInputError, "seed = 1: must be"),
         (lambda lab: lab.learn("stick", behaviors=2.5), affcli.BadInputError, "a whole number"),
         (lambda lab: lab.learn("stick", seed=2**63), affcli.BadInputError, "seed = 92233"),
         (lambda lab: lab.learn("stick", sensor="nose"), affcli.UsageError, "no sensor 'nose'"),
