@@ -75,14 +75,6 @@ def _first_crossing(polygon: ConvexPolygon) -> tuple[int, int] | None:
     number = np.arange(count)
     apart = np.abs(number[:, None] - number[None])
     strangers = (apart > 1) & (apart < count - 1)
+    # Where an edge runs back over the one before, the next after it touches that, too.
     met = np.argwhere(near & parted & parted.T & strangers)
-    if len(met):
-        return int(met[0][0]) + 1, int(met[0][1]) + 1
-    # Neighbours meet at their corner; they must not run back over each other.
-    along = ends - starts
-    following = np.roll(along, -1, axis=0)
-    back = (along[:, 0] * following[:, 1] == along[:, 1] * following[:, 0]) & (
-        (along * following).sum(axis=1) < 0.0
-    )
-    turned = np.flatnonzero(back)
-    return (int(turned[0]) + 1, int(turned[0] + 1) % count + 1) if len(turned) else None
+    return (int(met[0][0]) + 1, int(met[0][1]) + 1) if len(met) else None

@@ -16,6 +16,7 @@ from affcli.core.motion import (
     Wait,
     motion_from_json,
     motion_json,
+    poses,
     turned_by,
 )
 
@@ -64,3 +65,12 @@ def test_a_motion_tells_how_far_the_wrist_is_turned_on_the_way() -> None:
     assert turned_by(motion) == pytest.approx([0.0, math.radians(30.0), math.radians(-60.0)])
     assert turned_by((Wait(1.0),)) == (0.0,)
     assert turned_by((Turn(30.0), Carry(Pose(0.0, 9.0)), Turn(5.0))) == turned_by((Turn(30.0),))
+
+
+def test_a_motion_tells_where_the_wrist_is_on_the_way() -> None:
+    motion = (Slide(1.0, 5.0), Turn(90.0), Wait(1.0), Slide(2.0, 0.0), Carry(Pose(0.0, 9.0)))
+    quarter = 0.25 + math.radians(90.0)
+    assert poses(motion, Pose(3.0, 10.0, 0.25)) == (
+        *(Pose(3.0, 10.0, 0.25), Pose(4.0, 15.0, 0.25), Pose(4.0, 15.0, quarter)),
+        *(Pose(4.0, 15.0, quarter), Pose(6.0, 15.0, quarter), Pose(0.0, 9.0)),
+    )

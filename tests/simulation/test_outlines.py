@@ -67,6 +67,8 @@ def test_a_hook_is_several_parts_and_no_wedge() -> None:
         ([(0, 0), (2, 2), (2, 0), (0, 2)], "edges 1 and 3 cross"),
         ([(0, 0), (4, 0), (4, 3), (2, 0), (0, 3)], "cross or touch"),
         ([(0, 0), (4, 0), (4, 1), (2, 1), (6, 1), (6, 3), (0, 3)], "cross or touch"),
+        ([(0, 0), (6, 0), (4, 0), (4, 3), (0, 3)], "edges 1 and 3 cross"),
+        ([(0, 0), (4, 0), (-1, 0), (-1, 3)], "edges 2 and 4 cross"),
         ([(0, 0), (1, 0), (2, 0)], "an area of 0"),
         ([(0, 0), (1e-3, 0), (0, 1e-3)], "an area of"),
         ([(0, 0), (1, 0)], "2 corners"),

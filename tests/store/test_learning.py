@@ -384,6 +384,7 @@ def test_a_behavior_s_scene_is_as_it_truly_was(store: Store) -> None:
     run = learned(store, 3)
     (before, _), (record, truth) = learning_steps(3)[1:]
     scene = store.learning.scene(run.id, 3)
+    assert not scene.blocked
     assert truth is not None
     assert (scene.title, scene.key) == (f"Run {run.id}, behavior 3 of 3", (run.id, 3))
     assert (scene.learned, scene.held, scene.goal) == (run.spec, run.spec.held, None)
