@@ -136,6 +136,8 @@ def other_parts(
     if (spec.binding.name, spec.binding.params) != (GRASP, (("grasp_point", point),)):
         parts["binding"] = named(spec.binding)
     others = {"world": (spec.world, WORLD), "explorer": (spec.explorer, EXPLORER)}
+    if isinstance(spec, LearningSpec) and spec.transfer is not None:
+        parts["borrowed from"] = str(spec.transfer)
     if isinstance(spec, SessionSpec):
         others["planner"] = (spec.planner, PLANNER)
     # The version of ours does not matter.

@@ -1,6 +1,7 @@
 """``affcli learn``: a robot babbles with a tool for an hour and keeps what it saw (§6)."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Annotated
 
 import typer
@@ -25,7 +26,7 @@ from affcli.cli.options import (
     check_count,
     check_if_given,
     checked_hours,
-    checked_minutes,
+    checked_minutes_or_none,
     checked_note,
 )
 from affcli.cli.terminal import bars, say, show_either
@@ -37,6 +38,7 @@ from affcli.errors import BadInputError, UsageError
 from affcli.lab.clock import now
 from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report.learning import groups_json, groups_table, run_json, summary
+from affcli.report.transferring import borrowed_table
 from affcli.simulation.tools.paper import TOOL_PARTS
 
 AllTools = Annotated[bool, typer.Option("--all-tools", help="The paper's five tools.")]
@@ -53,9 +55,17 @@ Minutes = Annotated[
     float | None,
     typer.Option(
         "--minutes",
-        help="Instead of hours.",
+        help="Instead of hours; 0 to borrow only.",
         metavar="M",
-        callback=check_if_given(checked_minutes),
+        callback=check_if_given(checked_minutes_or_none),
+    ),
+]
+TransferFrom = Annotated[
+    str | None,
+    typer.Option(
+        "--transfer-from",
+        help="First it borrows from these runs what carries over.",
+        metavar="RUN,...",
     ),
 ]
 Behaviors = Annotated[
@@ -94,6 +104,7 @@ def learn(
     hours: Hours = None,
     minutes: Minutes = None,
     behaviors: Behaviors = None,
+    transfer_from: TransferFrom = None,
     seed: Seed = 0,
     repertoire: Repertoire = None,
     binding: Binding = None,
@@ -110,13 +121,19 @@ def learn(
 ) -> None:
     """Let a robot babble with a tool and fill its affordance table.
 
+    With --transfer-from it first borrows, from what was learned with other tools, the rows in whose
+    surroundings the new tool looks alike (§8).
+
     The same command again says that the run is done; after an interruption it goes on, as does
     --resume alone.
     """
     names = _tools_asked_for(tool, all_tools=all_tools)
     lengths = (hours, minutes, behaviors)
-    own = (*lengths, seed, sensor, config, changes, repertoire, binding, explorer, world)
+    own = (*(one is not None for one in lengths), seed, sensor, config, changes, transfer_from)
+    own = (*own, repertoire, binding, explorer, world)
     _check_together(names, lengths, resume=resume, own=any((*own, note)))
+    if minutes == 0.0 and transfer_from is None:
+        raise UsageError("--minutes 0 is for what only borrows: add --transfer-from RUN,...")
     if minutes is not None:
         hours = minutes / 60.0
     elif behaviors is None and hours is None:
@@ -131,7 +148,10 @@ def learn(
         world=world,
     )
     specs = [parts.spec(name, seed, 0, hours, behaviors) for name in names]
-    with opened(database, create=bool(names), write=True) as store:
+    with opened(database, create=bool(names) and transfer_from is None, write=True) as store:
+        if transfer_from is not None:
+            transfer = lab.transferring.transfer_from(store, transfer_from)
+            specs = [replace(spec, transfer=transfer) for spec in specs]
         if not names:
             specs = lab.learning.interrupted(store)
             if not specs:
@@ -139,6 +159,7 @@ def learn(
         runs, stuck = begun_runs(store, specs, note, all_or_none=bool(names))
         done = learned_runs_of(store, runs, workers)
         found = [(run, store.results.behavior_groups(run.id)) for run in done]
+        lent = [(run.id, *lab.transferring.borrowed_of(store, run.id)) for run in done]
     for words in filter(None, (lab.run_parts.beyond_the_box(run.spec) for run in done)):
         say(words)
     new = {run.id for run in runs if run.status != "done"}
@@ -148,7 +169,10 @@ def learn(
             {**run_json(run), "new": run.id in new, "groups": groups_json(groups)}
             for run, groups in found
         ],
-        tables=lambda: [groups_table(run, groups) for run, groups in found],
+        tables=lambda: [
+            *(groups_table(run, groups) for run, groups in found if groups),
+            *(borrowed_table(*one) for one in lent if one[1]),
+        ],
     )
     if stuck:
         for line in stuck[:-1]:
@@ -188,7 +212,10 @@ def begun_runs(
         for alike in lab.learning.made_by_other_defaults(store, spec):
             say(_in_words(alike))
         try:
-            runs.append(lab.learning.begun(store, spec, now, note))
+            found = store.learning.find(spec)
+            if found is not None and found.status != "done" and spec.transfer is not None:
+                say(lab.transferring.lenders_gone(store, spec))
+            runs.append(lab.learning.begun(store, spec, now, note, say))
         except BadInputError as error:
             if all_or_none:
                 raise

@@ -68,6 +68,11 @@ def checked_minutes(minutes: float) -> float:
     return _checked_time("--minutes", minutes, 60.0)
 
 
+def checked_minutes_or_none(minutes: float) -> float:
+    """Return the minutes, which may be 0; BadInputError as `checked_minutes`."""
+    return minutes if minutes == 0.0 else checked_minutes(minutes)
+
+
 def _checked_time(option: str, given: float, of_an_hour: float) -> float:
     """Return a time; BadInputError when it is not that of a run."""
     if not (math.isfinite(given) and 0.0 < given / of_an_hour <= LONGEST_HOURS):

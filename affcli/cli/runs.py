@@ -75,7 +75,9 @@ def show_run(
         run = store.learning.run(run_id)
         groups = store.results.behavior_groups(run_id) if run.kept is Keep.ALL else None
         belongings, log = store.runs.belongings(run_id), store.logs.source(run_id)
-        found = run, belongings, groups, log, store.inventions.of_run(run_id)
+        inventions = store.inventions.of_run(run_id)
+        lent = lab.transferring.borrowed_of(store, run_id)
+        found = run, belongings, groups, log, inventions, *lent
     if groups is None:
         say(f"its behaviors were not kept (--keep {run.kept})")
     show_either(

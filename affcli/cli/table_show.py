@@ -33,8 +33,9 @@ def show_row(
         history = lab.table.history_of(store, row_id)
         tries = store.verifications.of_row(row_id)
         line = store.logs.line(run.id, stored.row.step)
+        borrowed = lab.transferring.whence(store, stored)
     region = region_of(run.spec.held, stored.row)
-    found = (stored, region, run, history, tries, line)
+    found = (stored, region, run, history, tries, line, borrowed)
     show_either(
         as_json=as_json,
         results=lambda: [row_json(*found)],

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from affcli.core.behavior import BehaviorCall
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
-from affcli.core.geometry import Point
+from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Movement, Observation, angle_between_degrees, movement
 
 REPLICATION_ANGLE_DEGREES = 40.0
@@ -20,7 +20,8 @@ class Affordance:
     """One row: what was done with the tool and what was seen before and after.
 
     Args:
-        step: the step of the learning run that made the row; older rows have lower steps.
+        step: the step of the learning run that made the row; older rows have lower steps, borrowed
+            ones 0 or less.
         binding: the binding behavior and its parameters.
         exploratory: the exploratory behavior and its commanded parameters.
         start: O^s, the observation vector when the exploratory behavior began.
@@ -59,6 +60,17 @@ class Affordance:
     def wrist_degrees(self) -> int:
         """The wrist's angle in whole degrees; 0 where a log does not say it."""
         return 0 if math.isnan(self.wrist_angle) else round(math.degrees(self.wrist_angle))
+
+    @property
+    def is_borrowed(self) -> bool:
+        """It was made with another tool, and carried over: see `affcli.core.transfer`."""
+        return self.step <= 0
+
+    @property
+    def as_placed(self) -> tuple[Pose, Pose]:
+        """Where the wrist and the attractor were when it began, as it says (in, rad)."""
+        at = self.start
+        return Pose(*at.wrist, self.wrist_angle), Pose(*at.object_position)
 
     @property
     def replication_probability(self) -> float:

@@ -5,7 +5,8 @@ later, a stored run can be shown, gone on with and done again.
 """
 
 import json
-from dataclasses import dataclass, fields
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -15,9 +16,11 @@ from affcli.core.geometry import Pose
 from affcli.core.identity import Component, key_of
 from affcli.core.invention import Invention
 from affcli.core.log import LOG
+from affcli.core.mask import Mask
 from affcli.core.observation import SensorKind
 from affcli.core.task import Task
 from affcli.core.tool import Tool
+from affcli.core.transfer import Borrowed, Transfer
 from affcli.core.trial import BabblingRecord, TrialEnd, TrialStep, Truth
 
 
@@ -115,8 +118,9 @@ class LearningSpec(Parts):
         held: the tool, by value.
         seed: 0 to 2^63 - 1.
         robot: which of many robots that share the seed; 0 for the first.
-        hours: robot hours to babble for; None when `behaviors` is given.
+        hours: robot hours to babble for, 0 where it only borrows; None when `behaviors` is given.
         behaviors: how many behaviors to execute; None when `hours` is given.
+        transfer: what it borrows from others before, and how; None for nothing.
     """
 
     held: Tool
@@ -124,6 +128,7 @@ class LearningSpec(Parts):
     robot: int
     hours: float | None
     behaviors: int | None
+    transfer: Transfer | None = None
 
     @property
     def tool(self) -> str:
@@ -139,6 +144,7 @@ class LearningSpec(Parts):
             "robot": self.robot,
             "seed": self.seed,
             "tool": self.held.canonical(),
+            **({"transfer": self.transfer.canonical()} if self.transfer else {}),
         }
 
 
@@ -313,6 +319,9 @@ class RobotRecord:
         tested: all its testing trials; several conditions may have used one learning run.
         calibrations: of its camera in each learning run, as JSON; None without one.
         invented: what it invented.
+        borrowed: what learning runs borrowed, by their places in the life.
+        lent: the first condition for which each lender learned, by its place in the life.
+        masks: what its camera saw of the tools, of runs that lent or borrowed, likewise.
     """
 
     robot: int
@@ -320,6 +329,9 @@ class RobotRecord:
     tested: tuple[Tested, ...]
     calibrations: tuple[str | None, ...]
     invented: tuple[Invented, ...] = ()
+    borrowed: Mapping[int, tuple[Borrowed, ...]] = field(default_factory=dict)
+    lent: Mapping[int, int] = field(default_factory=dict)
+    masks: Mapping[int, Mask] = field(default_factory=dict)
 
     @property
     def trials(self) -> tuple[TrialRecord, ...]:

@@ -11,6 +11,7 @@ import numpy as np
 
 from affcli.core.affordance import Affordance
 from affcli.core.behavior import BehaviorCall
+from affcli.core.mask import Mask
 from affcli.core.observation import SensorKind
 from affcli.core.ports import Experimenter, Robot, Sensor
 from affcli.core.records import StepScene
@@ -97,6 +98,18 @@ class Setting(Protocol):
 
         Raises:
             ValueError, KeyError, TypeError: it is none of this world's.
+        """
+
+
+@runtime_checkable
+class ShowsTools(Protocol):
+    """A world whose robots see the shape of their tool, a capability that it may lack."""
+
+    def mask(self, learned: LearningSpec) -> Mask:
+        """Return what the camera of a robot sees of its tool: a function of the spec alone.
+
+        Raises:
+            NotSeenError: the camera does not see the tool, or not all of it.
         """
 
 

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from affcli.lab import run_parts as run_parts
     from affcli.lab import solving as solving
     from affcli.lab import table as table
+    from affcli.lab import transferring as transferring
     from affcli.lab import verifying as verifying
     from affcli.lab import viewing as viewing
 

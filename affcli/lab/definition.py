@@ -24,17 +24,19 @@ from affcli.config import (
     toml_file,
     with_sensor,
 )
-from affcli.core.identity import canonical_json, key_of, shown
+from affcli.core.identity import LONGEST_TEXT, canonical_json, key_of, shown
 from affcli.core.limits import LARGEST_SEED, LONGEST_HOURS, MOST_ROBOTS
 from affcli.core.names import one_of
 from affcli.core.part import Kind
 from affcli.core.specs import BROKEN_SHAPE, BROKEN_TOOL
 from affcli.errors import BadInputError, UsageError, one_line
+from affcli.lab.believing import is_told
 from affcli.lab.experiment import ADAPTATION, ADAPTATION_TASKS, Condition, Experiment
 from affcli.lab.inventing import Inventing, are_invented
 from affcli.lab.own_parts import TABLES as OWN_TABLES
 from affcli.lab.own_parts import OwnParts
 from affcli.lab.run_parts import RunParts, tasks_of
+from affcli.lab.transferring import Transferring
 from affcli.simulation.tools.paper import TOOL_PARTS
 
 TABLES = ("experiment", "base", "condition", "sweep", *OWN_TABLES)
@@ -50,7 +52,7 @@ NAMED: Mapping[str, Kind] = {
 }
 """What a condition says by the names of parts."""
 LISTS = ("tools", "repertoire", "tasks")
-KEYS = (*NAMED, "hours", "minutes", "sensor", "settings")
+KEYS = (*NAMED, "hours", "minutes", "sensor", "settings", "transfer")
 """What a condition may say; and each setting as ``section.key``."""
 USUAL: Mapping[str, Any] = {
     **{key: registry.DEFAULTS[key] for key in ("explorer", "planner", "binding", "world")},
@@ -182,10 +184,13 @@ def _whole(value: object, key: str, low: int, high: int) -> int:
 
 
 def _hours(value: object, of_an_hour: float) -> float:
-    """Return robot hours, given in hours or in minutes: how many of them are an hour."""
+    """Return robot hours, given in hours or in minutes: how many of them are an hour.
+
+    None at all are enough where robots borrow: see `_condition`.
+    """
     most = LONGEST_HOURS * of_an_hour
     number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not (number and 0.0 < value <= most):  # type: ignore[operator]
+    if not (number and 0.0 <= value <= most):  # type: ignore[operator]
         raise BadInputError(
             f"{one_line(value, 40)} must be a number of more than 0 and at most {most:g}"
         )
@@ -288,6 +293,8 @@ def _said(table: Mapping[str, Any], place: str, own_parts: OwnParts) -> Said:
         with _at(f"{place}.{given}"):
             if key == SENSOR:
                 said[key] = str(registry.component("sensors", _text(value, "a name", LONGEST_NAME)))
+            elif key == "transfer":
+                said[key] = str(Transferring.parse(_text(value, "what is borrowed", LONGEST_TEXT)))
             elif key == "hours":
                 said[key] = _hours(value, 1.0 if given == "hours" else 60.0)
             else:
@@ -341,9 +348,11 @@ def _condition(name: str, said: Said, own_parts: OwnParts) -> tuple[Condition, d
     planner = registry.component("planners", own["planner"])
     registry.planner(planner)
     tools, tasks = own_parts.tools(own["tools"]), own_parts.tasks(own["tasks"])
+    transferring = Transferring.parse(own["transfer"]) if "transfer" in own else None
     condition = Condition(
-        *(name, parts, planner, own["hours"], tuple(tools), tuple(tasks), inventing)
+        *(name, parts, planner, own["hours"], tuple(tools), tuple(tasks), inventing, transferring)
     )
+    _require_lenders(condition)
     world = condition.world
     for task_set in condition.tasks:
         tasks_of(world, ADAPTATION_TASKS if task_set == ADAPTATION else task_set, 0)
@@ -356,6 +365,23 @@ def _condition(name: str, said: Said, own_parts: OwnParts) -> tuple[Condition, d
     differing = {k: v for k, v in settings.values().items() if v != default[k] and k != SENSOR}
     sensor = {"sensor": parts.sensor, "settings": differing}
     return condition, {"name": name, **own, **sensor}
+
+
+def _require_lenders(condition: Condition) -> None:
+    """Refuse no time without anything to borrow, and to borrow where nothing is or can be."""
+    transferring = condition.transferring
+    if transferring is None:
+        if condition.hours == 0.0:
+            raise BadInputError(
+                "hours: 0 must be more than 0 where robots borrow nothing; else say from which "
+                'tools they do: transfer = "t-hook,l-stick"'
+            )
+        return
+    if is_told(condition.planner):
+        raise BadInputError(f"transfer: {condition.planner.name} is told its table; leave it out")
+    for tool in condition.tools:
+        if transferring.tools == (condition.parts.tool(tool).name,):
+            raise BadInputError(f"transfer: the {transferring.tools[0]} has none to borrow from")
 
 
 def _require_use(tools: Sequence[str], tasks: Sequence[str]) -> None:

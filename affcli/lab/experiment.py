@@ -4,7 +4,7 @@ The unit of work is one robot of the whole experiment: a pure function of the ex
 robot's number. It learns once what its conditions share, so they are paired robot by robot.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -15,6 +15,7 @@ from affcli.core.affordance_table import AffordanceTable
 from affcli.core.behavior import ExploratoryBehavior, Repertoire
 from affcli.core.identity import Component, key_of
 from affcli.core.invention import kept_of
+from affcli.core.mask import Mask
 from affcli.core.specs import (
     BROKEN_SHAPE,
     BROKEN_TOOL,
@@ -30,11 +31,14 @@ from affcli.core.specs import (
 )
 from affcli.core.task import tasks_json
 from affcli.core.tool import Tool
+from affcli.core.transfer import Borrowed
 from affcli.core.world import World
+from affcli.exploration.borrowing import Lender
 from affcli.lab.believing import TOLD, ToldRun, is_told, told_spec
 from affcli.lab.inventing import Inventing
 from affcli.lab.learning_run import LearningRun
 from affcli.lab.run_parts import RunParts, TaskSet, settings_of, tasks_of, world_of
+from affcli.lab.transferring import Transferring, borrowed_by, lender_of, mask_of
 from affcli.lab.trials import trial_specs, whole_trial
 
 ADAPTATION = "adaptation"
@@ -60,6 +64,7 @@ class Condition:
         tasks: sets of tasks, each done with every tool: by name, one's own by value; and maybe
             `ADAPTATION`.
         inventing: what each robot invents for itself first, to be added to its repertoire.
+        transferring: from which tools each robot borrows, after it has learned these.
     """
 
     name: str
@@ -69,6 +74,7 @@ class Condition:
     tools: tuple[str | Tool, ...]
     tasks: tuple[TaskSet, ...]
     inventing: tuple[Inventing, ...] = ()
+    transferring: Transferring | None = None
 
     @property
     def world(self) -> World:
@@ -81,9 +87,11 @@ class Condition:
         own = (kind, seed, robots, self.planner, ", ".join(sets))
         return SessionSpec(*own, **self.parts.carried())
 
-    def tables(self, seed: int, robot: int, invented: Repertoire = ()) -> Iterator[LearningSpec]:
+    def tables(
+        self, seed: int, robot: int, invented: Repertoire = ()
+    ) -> Iterator[tuple[LearningSpec, list[LearningSpec]]]:
         """Yield what the tables of a robot are functions of: learned with each tool; told, where
-        the planner is no robot's own.
+        the planner is no robot's own. With each, what it borrows from.
 
         Args:
             seed, robot: which robot.
@@ -93,15 +101,19 @@ class Condition:
         parts = replace(self.parts, repertoire=(*self.parts.repertoire, *new))
         for tool in self.tools:
             spec = parts.spec(tool, seed, robot, self.hours)
+            if self.transferring is not None:
+                lenders = self.transferring.lenders(parts, spec.tool, seed, robot)
+                yield replace(spec, transfer=self.transferring.of(lenders)), lenders
+                continue
             if not is_told(self.planner):
-                yield spec
+                yield spec, []
                 continue
             whole = told_spec(spec, self.planner)
-            yield whole
+            yield whole, []
             if tool == BROKEN_TOOL and ADAPTATION in self.tasks:
                 broken = told_spec(spec, self.planner, self.parts.tool(BROKEN_SHAPE))
                 if broken != whole:
-                    yield broken
+                    yield broken, []
 
     def uses(self, spec: LearningSpec, task_set: TaskSet) -> bool:
         """Tell whether tasks of a set start from a table: what one knows of a tool that broke is of
@@ -122,6 +134,7 @@ class Condition:
             "tools": [self.parts.tool(tool).canonical() for tool in self.tools],
             "tasks": [one if isinstance(one, str) else tasks_json(one) for one in self.tasks],
             **({"inventing": list(map(str, self.inventing))} if self.inventing else {}),
+            **({"transfer": str(self.transferring)} if self.transferring else {}),
         }
 
 
@@ -157,15 +170,34 @@ class Experiment:
 class _Learned:
     """A learning run with what trials need of it."""
 
-    def __init__(self, spec: LearningSpec) -> None:
+    def __init__(self, spec: LearningSpec, lenders: Sequence["_Learned"] = ()) -> None:
         run = ToldRun(spec) if spec.explorer.name == TOLD else LearningRun(spec)
         self.spec = spec
+        self.borrowed: tuple[Borrowed, ...] = ()
+        if spec.transfer is not None:
+            self.borrowed = borrowed_by(spec, [one.lender for one in lenders], self.mask)
         self.steps: tuple[LearningStep, ...] = tuple(run.steps())
         self.seconds = run.seconds
         self.calibration = run.calibration
         self.inventions = run.inventions() if isinstance(run, LearningRun) else ()
-        rows = (record.affordance for record, _ in self.steps)
-        self.table = AffordanceTable(row for row in rows if row is not None)
+        own = (record.affordance for record, _ in self.steps)
+        self.rows = (*(one.row for one in self.borrowed), *(row for row in own if row is not None))
+        self.table = AffordanceTable(self.rows)
+
+    @cached_property
+    def mask(self) -> Mask:
+        """What its camera sees of its tool: made where somebody asks."""
+        return mask_of(self.spec)
+
+    @property
+    def seen_mask(self) -> Mask | None:
+        """What its camera saw of its tool, if anybody asked."""
+        return self.__dict__.get("mask")
+
+    @cached_property
+    def lender(self) -> Lender:
+        """It, as one that others borrow from."""
+        return lender_of(self.spec, self.rows, self.mask)
 
     def trials(self, condition: Condition) -> Iterator[TrialRecord]:
         """Yield the trials of a condition that start from this run's table."""
@@ -190,7 +222,7 @@ class _Learned:
 
     def _row_starts(self) -> RowStarts:
         """Return where the wrist and the attractor truly were when each row was made."""
-        return {
+        return {one.row.step: one.row.as_placed for one in self.borrowed} | {
             record.step: (record.execution.wrist_start, truth.start)
             for record, truth in self.steps
             if record.affordance and truth is not None
@@ -203,10 +235,12 @@ class _Life:
     def __init__(self) -> None:
         self.runs: dict[str, _Learned] = {}
 
-    def learned(self, spec: LearningSpec) -> tuple[int, _Learned]:
+    def learned(
+        self, spec: LearningSpec, lenders: Sequence["_Learned"] = ()
+    ) -> tuple[int, _Learned]:
         """Return a run by its spec, and its place in the life."""
         if spec.key not in self.runs:
-            self.runs[spec.key] = _Learned(spec)
+            self.runs[spec.key] = _Learned(spec, lenders)
         return list(self.runs).index(spec.key), self.runs[spec.key]
 
 
@@ -215,20 +249,28 @@ def one_robot(experiment: Experiment, robot: int) -> RobotRecord:
     life, seed = _Life(), experiment.seed
     tested: list[Tested] = []
     invented: dict[int, Invented] = {}
+    lent: dict[int, int] = {}
     for number, condition in enumerate(experiment.conditions):
         able: list[ExploratoryBehavior] = []
         for wanted in condition.inventing:
             place, run = life.learned(wanted.spec(condition.parts, seed, robot))
             invented.setdefault(place, Invented(number, place, run.inventions))
             able += kept_of(run.inventions)
-        for spec in condition.tables(seed, robot, tuple(able)):
-            place, run = life.learned(spec)
+        for spec, others in condition.tables(seed, robot, tuple(able)):
+            lenders = [life.learned(one) for one in others]
+            for place, _ in lenders:
+                lent.setdefault(place, number)
+            place, run = life.learned(spec, [one for _, one in lenders])
             tested += [Tested(number, place, trial) for trial in run.trials(condition)]
     runs = life.runs.values()
+    masks = ((place, run.seen_mask) for place, run in enumerate(runs))
     return RobotRecord(
         robot,
         tuple((run.spec, run.steps, run.seconds) for run in runs),
         tuple(tested),
         tuple(run.calibration for run in runs),
         tuple(invented.values()),
+        {place: run.borrowed for place, run in enumerate(runs) if run.borrowed},
+        lent,
+        {place: mask for place, mask in masks if mask is not None},
     )

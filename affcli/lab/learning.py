@@ -80,7 +80,11 @@ def learn(
 
 
 def begun(
-    store: Store, spec: LearningSpec, now: Callable[[], str], note: str | None = None
+    store: Store,
+    spec: LearningSpec,
+    now: Callable[[], str],
+    note: str | None = None,
+    tell: Callable[[str], object] = str,
 ) -> LearningRunInfo:
     """Return the stored run of a spec, as far as it came; begun if there is none.
 
@@ -89,9 +93,11 @@ def begun(
         spec: which run.
         now: gives the time as ISO text, for the record only.
         note: written on it, in place of the one it has; None to leave that.
+        tell: is told what was made beside it, in lines.
 
     Raises:
         BadInputError: a part that this affcli lacks, or has in another version.
+        UsageError: it cannot borrow what it is to borrow.
         DatabaseError: what it needs to go on is missing.
     """
     info = store.learning.find(spec)
@@ -101,10 +107,30 @@ def begun(
         from affcli.lab.versions import versions
 
         run = LearningRun(spec) if info is None else gone_on_with(info)
-        info = store.learning.begin(spec, versions(run.world, spec.sensor), now())
+        made = versions(run.world, spec.sensor)
+        if spec.transfer is None or info is not None:
+            info = store.learning.begin(spec, made, now())
+        else:
+            info = _begun_with_rows(store, spec, made, now, tell)
     if note is not None:
         store.runs.note(info.id, note)
         info = store.learning.run(info.id)
+    return info
+
+
+def _begun_with_rows(
+    store: Store,
+    spec: LearningSpec,
+    versions: Mapping[str, str],
+    now: Callable[[], str],
+    tell: Callable[[str], object],
+) -> LearningRunInfo:
+    """Begin a run with the rows that it borrows."""
+    from affcli.lab.transferring import borrowed_from_store
+
+    mask, lent = borrowed_from_store(store, spec, tell)
+    info = store.learning.begin(spec, versions, now(), borrowing=lent)
+    store.transfers.save_mask(info.id, mask)
     return info
 
 

@@ -123,6 +123,7 @@ def gone_on_with(info: LearningRunInfo) -> LearningRun:
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
         raise damaged from error
     stands = (run.behaviors, run.setting.robot.clock) == (info.behaviors, info.robot_seconds)
-    if run.done or (info.checkpoint is not None and not stands):  # there would be no end to it
+    ended = run.done and info.spec.hours != 0.0  # in no time there is nothing to be done
+    if ended or (info.checkpoint is not None and not stands):  # there would be no end to it
         raise damaged
     return run

@@ -14,6 +14,7 @@ from affcli.core.observation import SensorKind
 from affcli.core.specs import LearningSpec, Parts
 from affcli.core.task import Task
 from affcli.core.tool import Tool, hold_of
+from affcli.core.transfer import Transfer
 from affcli.core.world import World
 from affcli.errors import BadInputError, DatabaseError, UsageError, one_line
 from affcli.simulation.sensing import require_camera
@@ -61,14 +62,17 @@ class RunParts(Parts):
         robot: int,
         hours: float | None,
         behaviors: int | None = None,
+        transfer: Transfer | None = None,
     ) -> LearningSpec:
         """Return what a learning run with these parts is a function of.
 
         Args:
             tool: as in `tool`.
-            seed, robot, hours, behaviors: as in `LearningSpec`.
+            seed, robot, hours, behaviors, transfer: as in `LearningSpec`.
         """
-        return LearningSpec(self.tool(tool), seed, robot, hours, behaviors, **self.carried())
+        return LearningSpec(
+            self.tool(tool), seed, robot, hours, behaviors, transfer, **self.carried()
+        )
 
     def tool(self, tool: str | Tool) -> Tool:
         """Return a tool: a registered one by its name in these settings' sizes, a person's own by

@@ -15,7 +15,9 @@ from affcli.core.log import LogFile, LogLine
 from affcli.core.observation import Observation
 from affcli.core.records import LearningRunInfo, StoredReplication, StoredRow, StoredStep
 from affcli.core.specs import TrialSpec
+from affcli.core.transfer import Borrowed
 from affcli.report.sheet import Sheet
+from affcli.report.transferring import borrowed_json, borrowed_words
 from affcli.report.words import call_words, degrees_of, fixed, many, movement_cell
 
 DIRECTIONS = "degrees: 0 right, 90 away from the robot, 180 left"
@@ -23,6 +25,8 @@ USUAL_BINDING = "grasp 1"
 
 Line = tuple[LogFile, LogLine]
 """Where a row stands in a log."""
+Whence = tuple[Borrowed, int | None]
+"""A borrowed row and the number of the run that made it; None when that was deleted."""
 Use = tuple[StoredStep, TrialSpec]
 """A step that tried a row, and the trial it is part of."""
 
@@ -39,12 +43,13 @@ def rows_table(rows: Sequence[tuple[StoredRow, str]], title: str, *, with_runs: 
     bindings = {call_words(stored.row.binding) for stored, _ in rows}
     columns = ("behavior", "from wrist", "region", "inches", "degrees", "uses")
     binding = ("binding",) if bindings - {USUAL_BINDING} else ()
+    borrowed = ("borrowed",) if any(stored.row.is_borrowed for stored, _ in rows) else ()
     table = Sheet(
-        ("id", *run, "tool", *binding, *columns),
+        ("id", *run, "tool", *binding, *columns, *borrowed),
         title=title,
         caption="from wrist: the attractor before; region: the part of the tool it was nearest to; "
         f"{DIRECTIONS}; uses: successes/uses, at 1/2 or less the row is excluded",
-        left=("tool", "binding", "behavior", "region"),
+        left=("tool", "binding", "behavior", "region", "borrowed"),
     )
     for stored, region in rows:
         row, moved = stored.row, stored.row.expected_movement
@@ -59,6 +64,7 @@ def rows_table(rows: Sequence[tuple[StoredRow, str]], title: str, *, with_runs: 
             f"{moved.distance:.1f}",
             str(degrees_of(moved.dx, moved.dy)),
             f"{row.times_successful}/{row.times_used}",
+            *(("yes" if row.is_borrowed else "no") for _ in borrowed),
         )
     return table
 
@@ -75,6 +81,7 @@ def row_tables(
     history: Sequence[Use],
     tries: Sequence[StoredReplication] = (),
     line: Line | None = None,
+    borrowed: Whence | None = None,
 ) -> tuple[RenderableType, ...]:
     """Return one row in full, its two observation vectors, and all that tried it.
 
@@ -85,9 +92,11 @@ def row_tables(
         history: the steps of trials that tried it.
         tries: those of verifications that updated the table.
         line: where it stands, if its run was imported from a log.
+        borrowed: where it comes from, if its run borrowed it.
     """
     verified = (_tries(tries),) if tries else ()
-    facts, observations = _facts(stored, region, run, line), _observations(stored.row)
+    facts = _facts(stored, region, run, line, borrowed)
+    observations = _observations(stored.row)
     return facts, observations, _history(history), *verified
 
 
@@ -98,6 +107,7 @@ def row_json(
     history: Sequence[Use],
     tries: Sequence[StoredReplication] = (),
     line: Line | None = None,
+    borrowed: Whence | None = None,
 ) -> dict[str, Any]:
     """Return what `row_tables` shows as JSON types."""
     row = stored.row
@@ -110,6 +120,7 @@ def row_json(
         "logged": None
         if line is None
         else {**line[0]._asdict(), "line": line[1].line, "object": line[1].object},
+        "borrowed_from": None if borrowed is None else borrowed_json(*borrowed),
         "history": [_use_json(step, trial) for step, trial in history],
         "verifications": [
             {**one._asdict(), "expected": one.expected[:2], "seen": one.seen[:2]} for one in tries
@@ -117,7 +128,13 @@ def row_json(
     }
 
 
-def _facts(stored: StoredRow, region: str, run: LearningRunInfo, line: Line | None) -> Sheet:
+def _facts(
+    stored: StoredRow,
+    region: str,
+    run: LearningRunInfo,
+    line: Line | None,
+    borrowed: Whence | None,
+) -> Sheet:
     """Return what was done, what is expected of it, and how far it may be trusted."""
     row, moved = stored.row, stored.row.expected_movement
     part = "" if run.session_id is None else f", robot {run.spec.robot} of session {run.session_id}"
@@ -128,9 +145,12 @@ def _facts(stored: StoredRow, region: str, run: LearningRunInfo, line: Line | No
     if line is not None:
         file, at = line
         whence = f"{file.name}, line {at.line}" + (f", object {at.object}" if at.object else "")
+    learned = {"learned": f"step {row.step} of run {run.id} ({whence})"}
+    if borrowed is not None:
+        learned = {"borrowed": f"by run {run.id} ({whence}): {borrowed_words(*borrowed)}"}
     facts = {
         "tool": stored.tool,
-        "learned": f"step {row.step} of run {run.id} ({whence})",
+        **learned,
         "done": f"{call_words(row.binding)}, then {call_words(row.exploratory)}{turned}",
         "attractor from wrist": f"{_place(row.start.wrist_to_object)} in{near}",
         "expected movement": f"{moved.distance:.1f} in at {degrees_of(moved.dx, moved.dy)} degrees",
@@ -243,6 +263,7 @@ def _row_json(stored: StoredRow, region: str) -> dict[str, Any]:
         "times_used": row.times_used,
         "replication_probability": row.replication_probability,
         "excluded": _excluded(row),
+        "borrowed": row.is_borrowed,
     }
 
 

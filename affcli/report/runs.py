@@ -1,15 +1,18 @@
 """Learning runs as they are kept: what each is, what used it, and its note."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 from affcli.core.invention import Invention
 from affcli.core.log import LogSource
 from affcli.core.records import Belongings, LearningRunInfo
 from affcli.core.results import BehaviorGroup
+from affcli.core.transfer import Borrowed
 from affcli.report.inventing import inventions_json, inventions_table
 from affcli.report.learning import groups_json, groups_table, run_json
 from affcli.report.sheet import Sheet
+from affcli.report.transferring import borrowed_json, borrowed_table
 from affcli.report.words import call_words, clock, fixed, many, run_words, seed_words
 
 SOME = 3
@@ -58,9 +61,11 @@ def run_tables(
     groups: Sequence[BehaviorGroup] | None,
     log: LogSource | None = None,
     inventions: Sequence[Invention] = (),
+    borrowed: Sequence[Borrowed] = (),
+    lenders: Mapping[str, int] = MappingProxyType({}),
 ) -> tuple[Sheet, ...]:
-    """Return one run in full, what it learned by behavior unless that was not kept, and what it
-    invented.
+    """Return one run in full, what it learned by behavior unless that was not kept, what it
+    invented, and what it borrowed.
 
     Args:
         run: which.
@@ -68,6 +73,8 @@ def run_tables(
         groups: what it learned by behavior; None where that was not kept.
         log: where it comes from, if it was imported.
         inventions: what the robot invented in it.
+        borrowed: what it borrowed.
+        lenders: the number of each lender's run that is there, by its key.
     """
     spec = run.spec
     wanted = (
@@ -92,7 +99,11 @@ def run_tables(
     sheet = Sheet(tuple(facts), title=f"Run {run.id}", records=True)
     sheet.add(*facts.values())
     sheets = [sheet] if groups is None else [sheet, groups_table(run, groups)]
-    return (*sheets, *([inventions_table(run, inventions)] if inventions else ()))
+    return (
+        *sheets,
+        *([inventions_table(run, inventions)] if inventions else ()),
+        *([borrowed_table(run.id, borrowed, lenders)] if borrowed else ()),
+    )
 
 
 def _log_facts(log: LogSource) -> dict[str, str]:
@@ -135,6 +146,8 @@ def run_in_full_json(
     groups: Sequence[BehaviorGroup] | None,
     log: LogSource | None = None,
     inventions: Sequence[Invention] = (),
+    borrowed: Sequence[Borrowed] = (),
+    lenders: Mapping[str, int] = MappingProxyType({}),
 ) -> dict[str, Any]:
     """Return what `run_tables` shows as JSON types."""
     spec = run.spec
@@ -151,4 +164,7 @@ def run_in_full_json(
         if log is None
         else {**log._asdict(), "files": [f._asdict() for f in log.files]},
         "inventions": inventions_json(inventions),
+        "borrowed": [
+            {"at": one.row.step, **borrowed_json(one, lenders.get(one.lender))} for one in borrowed
+        ],
     }

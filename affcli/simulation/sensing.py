@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from affcli.core.mask import Mask
 from affcli.core.observation import SENSOR_KINDS, SensorKind
 from affcli.core.part import Part
 from affcli.core.ports import Sensor
@@ -109,6 +110,18 @@ def eye_of(
     return _eye(camera, workspace, tuple(colors.items()), seed, robot)
 
 
+def mask_through(eye: "Eye", scene: Scene, tool: str, rng: np.random.Generator) -> Mask:
+    """Return the mask of a tool in a picture of a scene; `rng` decides the noise.
+
+    Raises:
+        NotSeenError: the camera does not see the tool, or not all of it.
+    """
+    from affcli.perception.tool_mask import tool_mask
+
+    seen = eye.segmenter.segment(eye.renderer.take(scene, rng))
+    return tool_mask(seen, eye.calibration.camera, eye.locator.wrist(seen), tool)
+
+
 def require_camera() -> None:
     """Make sure that the packages of the camera are installed.
 
@@ -122,7 +135,7 @@ def require_camera() -> None:
         )
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=16)
 def _eye(
     settings: CameraSettings,
     workspace: Workspace,

@@ -11,6 +11,7 @@ from affcli.core.affordance import Affordance, replicates
 from affcli.core.behavior import BehaviorCall, BehaviorName
 from affcli.core.geometry import Point, Pose
 from affcli.core.identity import stream_number
+from affcli.core.mask import Mask
 from affcli.core.observation import Movement, Observation, SensorKind
 from affcli.core.ports import Sensor
 from affcli.core.records import StepScene
@@ -18,7 +19,7 @@ from affcli.core.scene import Scene
 from affcli.core.setting import LARGEST
 from affcli.core.specs import LearningSpec, RowStarts, TrialSpec, VerificationSpec
 from affcli.core.task import Task
-from affcli.core.tool import Tool, hold_of
+from affcli.core.tool import PUCK_COLOR, Tool, hold_of
 from affcli.core.trial import Truth
 from affcli.core.workspace import Workspace
 from affcli.core.world import BringsSensors, Film
@@ -27,7 +28,7 @@ from affcli.perception.noisy_sensor import SensorSettings
 from affcli.simulation.experimenter import SimulatedExperimenter
 from affcli.simulation.physics_settings import PhysicsSettings
 from affcli.simulation.robot import SimulatedRobot
-from affcli.simulation.sensing import SimulatedSight
+from affcli.simulation.sensing import SimulatedSight, eye_of, mask_through
 from affcli.simulation.table import Table
 from affcli.simulation.tasks.extension_of_reach import NAME, paper_tasks
 from affcli.simulation.worlds import TABLE, TABLE_VERSION
@@ -35,7 +36,7 @@ from affcli.simulation.worlds import TABLE, TABLE_VERSION
 TaskSet = Callable[[Workspace], tuple[Task, ...]]
 PAPER_TASKS: Mapping[str, TaskSet] = {NAME: paper_tasks}
 
-LEARNING, TRIAL, VERIFICATION, PREDICTION = 0, 1, 3, 4
+LEARNING, TRIAL, VERIFICATION, PREDICTION, MASK = 0, 1, 3, 4, 5
 """First word of a random stream's key: what it is for. 2 is a camera's power-up (`sensing`)."""
 STREAMS = ("choices", "noise", "hand")
 """The random streams of a setting."""
@@ -217,6 +218,18 @@ class TableWorld:
     def lost_rows(self, learned: LearningSpec, left: Tool, starts: RowStarts) -> "LostAffordances":
         """Return who tells which rows were lost when the tool broke to `left`."""
         return LostAffordances(self._settings, learned, left, starts)
+
+    def mask(self, learned: LearningSpec) -> Mask:
+        """Return what a robot's camera sees of its tool, which lies at the table's centre, and the
+        attractor in the corner; whatever it sees through besides.
+        """
+        workspace, camera = self._settings.workspace, self._settings.camera
+        eye = eye_of(camera, workspace, learned.held, learned.seed, learned.robot)
+        top, held = workspace.table, learned.held.held(hold_of(learned.binding))
+        scene = Scene(Pose(top.half_width, top.near), PUCK_COLOR, self._table.home, held, None)
+        key = (MASK, learned.seed, learned.robot, stream_number(learned.tool))
+        rng = np.random.Generator(np.random.PCG64(np.random.SeedSequence(key)))
+        return mask_through(eye, scene, learned.tool, rng)
 
     def _tested(
         self, purpose: int, spec: VerificationSpec, learned: LearningSpec, *words: int

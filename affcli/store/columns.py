@@ -39,7 +39,7 @@ COLUMNS: dict[str, tuple[str, ...]] = {
         *("session_id", "key", "tool", "tool_key", "seed", "robot", "hours", "behaviors_limit"),
         *_PARTS,
         *("behaviors", "rows", "resets", "redraws", "robot_seconds", "checkpoint", "calibration"),
-        *("note", "kept"),
+        *("note", "kept", "transfer"),
     ),
     "behavior": (
         *("learning_run_id", "step", "clock", "exploratory_behavior", "exploratory_params"),
@@ -75,6 +75,14 @@ COLUMNS: dict[str, tuple[str, ...]] = {
         *("step", "gain", "kept"),
     ),
     "invention_try": ("learning_run_id", "number", "step", "alike"),
+    "mask": (
+        *("learning_run_id", "first_column", "first_row", "columns", "rows", "scale", "cells"),
+        *("red", "green", "blue"),
+    ),
+    "borrowed": (
+        *("learning_run_id", "step", "lender_key", "lender_tool", "lender_step"),
+        *("shift_x", "shift_y", "mirrored"),
+    ),
     "log": ("learning_run_id", "source", "licence", "citation", "map", "left_out"),
     "log_file": ("learning_run_id", "number", "name", "sha256"),
     "log_line": ("learning_run_id", "step", "file", "line", "object"),
@@ -88,6 +96,7 @@ JSON_COLUMNS = frozenset(
     {
         *("settings", "versions", "repertoire", "binding_params", "exploratory_params"),
         *("checkpoint", "calibration", "reasons", "last_reasons", "definition", "map", "motion"),
+        "transfer",
     }
 )
 """Columns that hold JSON."""

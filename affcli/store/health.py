@@ -50,7 +50,14 @@ CHECKS = {
         SELECT 'affordance ' || a.id FROM affordance a JOIN learning_run r
         ON r.id = a.learning_run_id AND r.kept = 'all' LEFT JOIN behavior b
         ON b.learning_run_id = a.learning_run_id AND b.step = a.step
-        WHERE coalesce(b.change_detected, 0) <> 1""",
+        WHERE coalesce(b.change_detected, 0) <> 1 AND a.step >= 1""",
+    "a borrowed row says where it comes from": """
+        SELECT 'affordance ' || a.id FROM affordance a LEFT JOIN borrowed b
+        ON b.learning_run_id = a.learning_run_id AND b.step = a.step
+        WHERE a.step <= 0 AND b.step IS NULL
+        UNION ALL SELECT 'run ' || b.learning_run_id FROM borrowed b JOIN learning_run r
+        ON r.id = b.learning_run_id AND r.kept <> 'trials' LEFT JOIN affordance a
+        ON a.learning_run_id = b.learning_run_id AND a.step = b.step WHERE a.id IS NULL""",
     "an invention was made, and tried again, by behaviors of its run": """
         SELECT 'run ' || i.learning_run_id FROM (SELECT learning_run_id, step FROM invention
         UNION ALL SELECT learning_run_id, step FROM invention_try) i

@@ -13,13 +13,14 @@ from affcli.core.log import LOG, LoggedTry
 from affcli.core.records import AlikeRun, ChangedPart, LearningRunInfo, StepScene, StoredRow
 from affcli.core.replay import Difference
 from affcli.core.specs import LearningSpec, LearningStep, RowStarts
+from affcli.core.transfer import Borrowed
 from affcli.core.trial import Attempt
 from affcli.errors import DatabaseError, UsageError, one_line
 from affcli.store import reading, rows
 from affcli.store.comparing import by_number, differences
 from affcli.store.connection import Database, insert_many, insert_one, mappings, numbered
 from affcli.store.keeping import require_kept
-from affcli.store.tables import affordance, behavior, learning_run, tool, trial
+from affcli.store.tables import affordance, behavior, borrowed, learning_run, tool, trial
 
 COUNTERS = frozenset({"times_used", "times_successful"})
 """Trials change them after a row is made."""
@@ -44,14 +45,18 @@ class Learning:
         versions: Mapping[str, str],
         now: str,
         session_id: int | None = None,
+        borrowing: Sequence[Borrowed] = (),
     ) -> LearningRunInfo:
         """Return the stored run of `spec`, new or as far as it came.
+
+        What it borrows is saved with its beginning: going on with it needs no lender.
 
         Args:
             spec: what the run is a function of.
             versions: recorded with a new run.
             now: ISO text, UTC.
             session_id: the reproduction it is part of.
+            borrowing: what a new run borrows.
         """
         found = self.find(spec, session_id)
         if found is not None:
@@ -59,9 +64,12 @@ class Learning:
         with self.database.writing() as connection:
             # Another process may have begun it in between.
             if connection.execute(_the_run(spec, session_id)).first() is None:
-                insert_run(connection, rows.learning_run_row(spec, versions, now, session_id), spec)
-            (row,) = mappings(connection, _the_run(spec, session_id))
-            return reading.learning_run(row)
+                row = rows.learning_run_row(spec, versions, now, session_id)
+                row["rows"] = len(borrowing)
+                run_id = insert_run(connection, row, spec)
+                insert_borrowed(connection, run_id, spec.tool, borrowing)
+            (stored,) = mappings(connection, _the_run(spec, session_id))
+            return reading.learning_run(stored)
 
     def find(self, spec: LearningSpec, session_id: int | None = None) -> LearningRunInfo | None:
         """Return the stored run of `spec`, None when there is none."""
@@ -84,7 +92,9 @@ class Learning:
         return tuple(
             AlikeRun(run, _changed(run.spec, spec))
             for run in runs
-            if run.spec.repertoire == spec.repertoire and run.spec.world.name == spec.world.name
+            if run.spec.repertoire == spec.repertoire
+            and run.spec.world.name == spec.world.name
+            and run.spec.transfer == spec.transfer
         )
 
     def append(
@@ -244,7 +254,8 @@ class Learning:
     def row_starts(self, run_id: int) -> RowStarts:
         """Return where the wrist and, truly, the attractor were when each row of a run was made.
 
-        Empty for a world that does not tell where the attractor truly is.
+        Empty for a world that does not tell where the attractor truly is. A borrowed row was not
+        made there: it is taken as it says.
 
         Raises:
             DatabaseError: behaviors that made rows are missing.
@@ -253,16 +264,16 @@ class Learning:
         require_kept(self.database, "behaviors", learning_run.c.id == run_id)
         wanted = sa.select(behavior).where(b.learning_run_id == run_id, b.change_detected == 1)
         made = self.database.mappings(wanted)
-        rows = self.database.mappings(
-            sa.select(affordance.c.step).filter_by(learning_run_id=run_id)
-        )
+        stored = [one.row for one in self.rows(run_id)]
+        own = [row for row in stored if not row.is_borrowed]
         known, count = {row["step"] for row in made}, self.run(run_id).rows
-        if len(made) < count or any(row["step"] not in known for row in rows):
+        borrowing = {row.step: row.as_placed for row in stored if row.is_borrowed}
+        if len(made) + len(borrowing) < count or any(row.step not in known for row in own):
             raise DatabaseError(
                 f"learning run {run_id} lacks behaviors that made its rows; restore a copy of the "
                 "database"
             )
-        return {
+        return borrowing | {
             row["step"]: (reading.pose(row, "wrist_start"), reading.pose(row, "true_start"))
             for row in made
             if row["true_start_x"] is not None
@@ -386,6 +397,15 @@ def insert_tools(connection: sa.Connection, *specs: Any) -> None:
             "ON CONFLICT (key) DO NOTHING",
             [rows.tool_row(tool) for tool in held],
         )
+
+
+def insert_borrowed(
+    connection: sa.Connection, run_id: int, tool: str, made: Sequence[Borrowed]
+) -> None:
+    """Insert what a run borrowed."""
+    own = [rows.affordance_row(run_id, tool, one.row) for one in made]
+    insert_many(connection, affordance, own)
+    insert_many(connection, borrowed, [rows.borrowed_row(run_id, one) for one in made])
 
 
 def insert_steps(

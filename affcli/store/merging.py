@@ -22,11 +22,13 @@ from affcli.store.sessions import forget_failure
 from affcli.store.tables import (
     affordance,
     behavior,
+    borrowed,
     experiment,
     failed_robot,
     invention,
     invention_try,
     learning_run,
+    mask,
     session,
     step,
     tool,
@@ -326,6 +328,8 @@ class _Merging:
         self._copy_rows(life, behavior, "step", runs)
         self._copy_rows(life, invention, "number", runs)
         self._copy_rows(life, invention_try, "step", runs)
+        self._copy_rows(life, mask, "first_column", runs)
+        self._copy_rows(life, borrowed, "step", runs)
         rows = self._copy_numbered(life, runs)
         for row in life.trials():
             own = {

@@ -31,6 +31,7 @@ from affcli.store.results import Results
 from affcli.store.runs import Runs
 from affcli.store.selections import Selections
 from affcli.store.sessions import Sessions
+from affcli.store.transfers import Transfers
 from affcli.store.trials import Trials
 from affcli.store.verifications import Verifications
 from affcli.store.waiting import LONGEST_WAIT, PRIMARY, Waiting
@@ -63,6 +64,8 @@ class Store:
         """Verifications, with the tries of each."""
         self.inventions = Inventions(database)
         """What robots invented."""
+        self.transfers = Transfers(database)
+        """What runs saw of their tools, and what they borrowed."""
         self.logs = Logs(database)
         """Where imported runs come from."""
         self.results = Results(database)

@@ -14,6 +14,8 @@ from affcli.store.rows import (
     Row,
     affordance_row,
     behavior_row,
+    borrowed_row,
+    mask_row,
     step_row,
     trial_end_row,
     trial_row,
@@ -49,6 +51,8 @@ class PackedRun:
         kept: how much of it is kept.
         trials: those that start from its table, by the condition that they are part of.
         inventions: what the robot invented in it.
+        borrowed: where each row comes from that it borrowed, without the run's id.
+        mask: what its camera saw of the tool, without the run's id; none where nobody asked.
     """
 
     spec: LearningSpec
@@ -59,6 +63,8 @@ class PackedRun:
     kept: Keep
     trials: dict[int, list[PackedTrial]]
     inventions: tuple[Invention, ...] = ()
+    borrowed: tuple[Row, ...] = ()
+    mask: tuple[Row, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,9 +84,14 @@ def pack_robot(record: RobotRecord, keep: Keep = Keep.ALL) -> PackedRobot:
     """Return what is kept of the life of a robot as rows, ready to be sent to who saves it."""
     runs = []
     for number, (spec, steps, seconds) in enumerate(record.learned):
-        rows = [r.affordance for r, _ in steps if r.affordance is not None]
+        lent = record.borrowed.get(number, ())
+        rows = [one.row for one in lent]
+        rows += [r.affordance for r, _ in steps if r.affordance is not None]
+        seen = record.masks.get(number)
         invented = [one for one in record.invented if one.run == number]
         trials: dict[int, list[PackedTrial]] = {one.condition: [] for one in invented}
+        if number in record.lent:
+            trials[record.lent[number]] = []
         for condition, run, trial in record.tested:
             if run == number:
                 trials.setdefault(condition, []).append(pack_trial(trial, keep))
@@ -102,6 +113,8 @@ def pack_robot(record: RobotRecord, keep: Keep = Keep.ALL) -> PackedRobot:
                 kept=keep,
                 trials=trials,
                 inventions=invented[0].inventions if invented else (),
+                borrowed=tuple(borrowed_row(0, one)[1:] for one in lent if keep is not Keep.TRIALS),
+                mask=() if seen is None else (mask_row(0, seen)[1:],),
             )
         )
     return PackedRobot(record.robot, tuple(runs))

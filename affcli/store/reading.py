@@ -21,6 +21,7 @@ from affcli.core.geometry import Point, Pose
 from affcli.core.identity import Component
 from affcli.core.limits import LONGEST_HOURS, MOST_BEHAVIORS, MOST_ROBOTS
 from affcli.core.log import NOT_LOGGED, LoggedTry
+from affcli.core.mask import Mask
 from affcli.core.observation import Movement, Observation, SensorKind
 from affcli.core.records import (
     ExperimentInfo,
@@ -34,6 +35,7 @@ from affcli.core.records import (
 from affcli.core.specs import Counters, Keep, LearningSpec, Protocol, SessionSpec, TrialSpec
 from affcli.core.task import GoalRegion, Task
 from affcli.core.tool import Tool, tool_from_canonical, unknown_tool
+from affcli.core.transfer import Transfer
 from affcli.core.trial import Outcome
 from affcli.errors import BadInputError, DatabaseError
 from affcli.store.columns import END_OBSERVATION, START_OBSERVATION
@@ -93,6 +95,25 @@ def component(text: str) -> Component:
 def tool(name: str, definition: str | None) -> Tool:
     """Return a tool by its name and its value; one without a shape where that is not stored."""
     return unknown_tool(name) if definition is None else tool_from_canonical(json_value(definition))
+
+
+@lru_cache(maxsize=256)
+def transfer(text: str) -> Transfer:
+    """Return what a run borrows from, and how."""
+    return Transfer.from_canonical(json_value(text))
+
+
+def mask(row: Columns) -> Mask:
+    """Return what a camera saw of a tool."""
+    return Mask(
+        column=row["first_column"],
+        row=row["first_row"],
+        columns=row["columns"],
+        rows=row["rows"],
+        cells=bytes.fromhex(row["cells"]),
+        color=(row["red"], row["green"], row["blue"]),
+        scale=row["scale"],
+    )
 
 
 def reasons(text: str) -> Reasons:
@@ -207,6 +228,7 @@ def learning_spec(row: Columns) -> LearningSpec:
         robot=row["robot"],
         hours=_at_most(row["hours"], LONGEST_HOURS),
         behaviors=_at_most(row["behaviors_limit"], MOST_BEHAVIORS),
+        transfer=None if row["transfer"] is None else transfer(row["transfer"]),
         **_parts(row),
     )
 

@@ -10,8 +10,10 @@ from affcli.core.behavior import BehaviorCall, repertoire_json
 from affcli.core.choice import Reasons
 from affcli.core.geometry import direction_degrees
 from affcli.core.identity import canonical_json
+from affcli.core.mask import Mask
 from affcli.core.specs import LearningSpec, SessionSpec, TrialSpec, VerificationSpec
 from affcli.core.tool import Tool
+from affcli.core.transfer import Borrowed
 from affcli.core.trial import Attempt, BabblingRecord, StepRecord, TrialEnd, Truth
 from affcli.core.verification import ReplicationRecord
 
@@ -83,6 +85,7 @@ def learning_run_row(
         "robot": spec.robot,
         "hours": spec.hours,
         "behaviors_limit": spec.behaviors,
+        "transfer": None if spec.transfer is None else canonical_json(spec.transfer.canonical()),
         **dict.fromkeys(("behaviors", "rows", "resets", "redraws"), 0),
         "robot_seconds": 0.0,
     }
@@ -113,6 +116,19 @@ def affordance_row(run: int, tool: str, row: Affordance) -> Row:
         *(expected.distance, direction_degrees(expected.dx, expected.dy)),
         *(row.times_used, row.times_successful, row.wrist_angle, *row.travel),
     )
+
+
+def mask_row(run: int, mask: Mask) -> Row:
+    """Return the row of what a run's camera saw of its tool."""
+    return (
+        *(run, mask.column, mask.row, mask.columns, mask.rows, mask.scale, mask.cells.hex()),
+        *mask.color,
+    )
+
+
+def borrowed_row(run: int, one: Borrowed) -> Row:
+    """Return the row that says where a borrowed row comes from."""
+    return (run, one.row.step, one.lender, one.tool, one.step, *one.shift, one.mirrored)
 
 
 def trial_row(spec: TrialSpec, calibration: str | None) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from affcli.store.experiments import settle
 from affcli.store.inventions import Inventions
 from affcli.store.learning import insert_run
 from affcli.store.packing import PackedRobot, pack_robot
-from affcli.store.tables import affordance, behavior, failed_robot, session, trial
+from affcli.store.tables import affordance, behavior, borrowed, failed_robot, mask, session, trial
 from affcli.store.trials import insert_trials
 
 
@@ -143,6 +143,8 @@ class Sessions:
                 run_id = insert_run(connection, row, run.spec)
                 insert_many(connection, behavior, [(run_id, *one) for one in run.behaviors])
                 insert_many(connection, affordance, [(run_id, *one) for one in run.affordances])
+                insert_many(connection, borrowed, [(run_id, *one) for one in run.borrowed])
+                insert_many(connection, mask, [(run_id, *one) for one in run.mask])
                 Inventions(self.database).save(run_id, run.inventions)
                 rows_of = _affordance_ids(connection, run_id)
                 for condition, trials in run.trials.items():

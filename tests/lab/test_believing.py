@@ -155,5 +155,5 @@ def test_who_believes_in_the_whole_tool_repeats_itself_and_the_oracle_does_not(
 def test_an_experiment_with_a_baseline_is_read(tmp_path: Path) -> None:
     path = tmp_path / "small.toml"
     path.write_text(FILE)
-    tables = (one.tables(0, 0) for one in experiment_file(path).conditions)
+    tables = ([spec for spec, _ in one.tables(0, 0)] for one in experiment_file(path).conditions)
     assert len({spec.key for specs in tables for spec in specs}) == 3

@@ -168,7 +168,7 @@ def test_as_many_conditions_as_there_may_be_can_be_stored(read: Any, store: Stor
         (f"{HEAD}[base]\ntools = ['hoe']\n", "base.tools: no tool 'hoe'; did you mean"),
         (f"{HEAD}[base]\ntools = ['stick', 'stick']\n", "base.tools: stick comes twice"),
         (f"{HEAD}[base]\nexplorer = 'random:x=1'\n", "base.explorer: random: no parameter x"),
-        (f"{HEAD}[base]\nhours = 0\n", "base.hours: 0 must be a number of more than 0 and at most"),
+        (f"{HEAD}[base]\nhours = 0\n", "hours: 0 must be more than 0 where robots borrow nothing"),
         (f"{HEAD}[base]\nminutes = 1{'0' * 400}\n", "base.minutes: 1000"),
         (f"{HEAD}[base]\nhours = 'long'\n", "base.hours: long must be a number of more than 0"),
         (f"{HEAD}[base]\nminutes = nan\n", "base.minutes: nan must be a number of more than 0"),

@@ -1,14 +1,17 @@
 """`check` finds what must not be, and nothing where all is well."""
 
 import sqlite3
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from affcli.core.behavior import composed
+from affcli.core.geometry import Point
 from affcli.core.invention import Invention
 from affcli.core.motion import Turn
 from affcli.core.specs import Counters
+from affcli.core.transfer import Borrowed, Borrowing, Transfer
 from affcli.errors import DatabaseError
 from affcli.store import Store, check, open_store
 from tests.store.records import (
@@ -48,15 +51,22 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
             row = counted(row, record)
         store.verifications.save(run.id, verification_spec(), tries, VERSIONS, NOW, NOW)
         turn = composed((Turn(31.0),))
+        lent = Borrowed(
+            replace(row, step=0, times_used=1, times_successful=1),
+            *("0" * 64, "stick", 3, Point(0.0, -0.5)),
+            mirrored=True,
+        )
+        borrower = replace(run.spec, transfer=Transfer(("0" * 64,), Borrowing()))
+        store.learning.begin(borrower, VERSIONS, NOW, borrowing=[lent])
         store.inventions.save(run.id, [Invention(turn, 2, 9, ((5, True), (6, True)), kept=True)])
     return path
 
 
 def test_all_is_well_in_a_database_that_was_used(sound: Path) -> None:
     findings = check(sound)
-    assert len(findings) == 20
+    assert len(findings) == 21
     assert [f for f in findings if f.wrong] == []
-    assert {f.example for f in findings if f.unfinished} == {"session 1 (solve)"}
+    assert {f.example for f in findings if f.unfinished} == {"run 2", "session 1 (solve)"}
 
 
 def test_all_is_well_in_an_empty_one(store: Store) -> None:
@@ -84,6 +94,8 @@ def test_all_is_well_in_an_empty_one(store: Store) -> None:
         ("update behavior set clock = NULL where step = 2", "only a log leaves out"),
         ("update invention set step = 99", "an invention was made"),
         ("update invention_try set step = 99 where step = 5", "an invention was made"),
+        ("delete from borrowed", "a borrowed row says where it comes from"),
+        ("delete from affordance where step = 0", "a borrowed row says where it comes from"),
         ("update learning_run set world = 'log:content=x'", "says where it comes from"),
     ],
 )

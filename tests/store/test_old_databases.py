@@ -65,6 +65,12 @@ LEARNED: dict[str, tuple[tuple[str, tuple[str, ...], tuple[str, int, int]], ...]
         ("stick", (), ("camera", 5, 3)),
         ("l-stick", (), ("noisy", 7, 24)),
     ),
+    "0008": (
+        ("t-hook", ("trial.max_steps=5",), ("noisy", 5, 60)),
+        ("l-hook", (), ("noisy", 2, 16)),
+        ("stick", (), ("camera", 5, 3)),
+        ("l-stick", (), ("noisy", 7, 24)),
+    ),
 }
 """The runs of each database: tool, settings, then sensor, seed and behaviors of the command."""
 CASES = [(revision, *run) for revision, runs in LEARNED.items() for run in runs]
@@ -224,7 +230,7 @@ def test_trials_of_older_physics_are_not_replayed(stored: Store) -> None:
             replay_trial(stored, trial.id)
 
 
-@pytest.mark.parametrize("revision", ["0003", "0004", "0005", "0006", "0007"])
+@pytest.mark.parametrize("revision", ["0003", "0004", "0005", "0006", "0007", "0008"])
 def test_an_interrupted_run_of_older_physics_is_not_gone_on_with(
     revision: str, tmp_path: Path
 ) -> None:

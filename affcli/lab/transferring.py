@@ -1,0 +1,261 @@
+"""Carrying over to a new tool: from which runs a robot borrows, and what comes of it (§8)."""
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from affcli import registry
+from affcli.core.affordance import Affordance
+from affcli.core.identity import LONGEST_TEXT, Component, shown, stream_number
+from affcli.core.limits import LARGEST_SEED
+from affcli.core.mask import Mask
+from affcli.core.records import LearningRunInfo, StoredRow
+from affcli.core.setting import Value
+from affcli.core.specs import LearningSpec
+from affcli.core.transfer import MOST_LENDERS, Borrowed, Borrowing, Transfer
+from affcli.core.world import ShowsTools
+from affcli.errors import BadInputError, UsageError, one_line
+from affcli.exploration.borrowing import Lender, borrow
+from affcli.lab.run_parts import RunParts, world_of
+from affcli.store import Store
+
+TRANSFER = 6
+"""First word of the key of the random streams by which rows are drawn; see `simulation`."""
+OPTION = "--transfer-from"
+
+Tell = Callable[[str], object]
+"""Is told what a person should know, in a line."""
+
+
+def mask_of(spec: LearningSpec) -> Mask:
+    """Return what the camera of a run's robot sees of its tool: a function of the spec alone.
+
+    Raises:
+        UsageError: its world shows no tools, or the camera's packages are missing.
+        NotSeenError: the camera does not see the tool.
+    """
+    world = world_of(spec)
+    if not isinstance(world, ShowsTools):
+        raise UsageError(f"the world {world.name} shows no tool's shape: nothing can be borrowed")
+    return world.mask(spec)
+
+
+def borrowed_by(spec: LearningSpec, lenders: Sequence[Lender], mask: Mask) -> tuple[Borrowed, ...]:
+    """Return what a run borrows: a function of its spec, for that names its lenders.
+
+    Args:
+        spec: of the run.
+        lenders: those that it names, with their rows as they were learned.
+        mask: what its camera sees of its tool.
+
+    Raises:
+        ValueError: it names none.
+    """
+    if spec.transfer is None:
+        raise ValueError(f"the {spec.tool} borrows nothing")
+
+    def stream(name: str) -> np.random.Generator:
+        """Return the random stream of a name."""
+        key = (TRANSFER, spec.seed, spec.robot, stream_number(spec.tool), stream_number(name))
+        return np.random.Generator(np.random.PCG64(np.random.SeedSequence(key)))
+
+    return borrow(lenders, mask, spec.repertoire, spec.transfer.borrowing, stream)
+
+
+def lender_of(spec: LearningSpec, rows: Sequence[Affordance], mask: Mask) -> Lender:
+    """Return a run as a lender: of the rows that its own robot made, as they were learned."""
+    own = [replace(row, times_used=1, times_successful=1) for row in rows if not row.is_borrowed]
+    return Lender(spec.key, spec.tool, own, mask)
+
+
+def transfer_from(store: Store, text: str) -> Transfer:
+    """Return what ``1,2:limit=0.2`` stands for: runs to borrow from, and how.
+
+    Raises:
+        BadInputError: a text of another form, or a wrong parameter.
+        UsageError: there is no such run; the message says what to do.
+    """
+    place = f"{OPTION} {one_line(text, 60)}"
+    numbers, borrowing = _parsed(text, place)
+    if not all(re.fullmatch(r"[0-9]{1,18}", one) for one in numbers):
+        raise BadInputError(f"{place}: name runs by their numbers: {OPTION} 1,2")
+    keys = []
+    for number in map(int, numbers):
+        if not 1 <= number <= LARGEST_SEED:
+            raise BadInputError(f"{place}: runs are numbered from 1")
+        try:
+            keys.append(store.learning.run(number).spec.key)
+        except UsageError as error:
+            raise UsageError(f"{place}: {error}; affcli runs list shows which there are") from error
+    return Transfer(tuple(sorted(set(keys))), borrowing)
+
+
+def _parsed(text: str, place: str) -> tuple[list[str], Borrowing]:
+    """Return the names before the colon, and how to borrow, which stands behind it."""
+    head, _, tail = text[:LONGEST_TEXT].partition(":")
+    names = [one.strip() for one in head.split(",")]
+    if not all(names) or len(text) > LONGEST_TEXT or len(names) > MOST_LENDERS:
+        raise BadInputError(f"{place}: not of the form NAME,NAME:key=value,key=value")
+    return names, Borrowing.of(_params(tail, place), place)
+
+
+def _params(tail: str, place: str) -> dict[str, Value]:
+    """Return the parameters of a text like ``key=value,key=value``."""
+    try:
+        return dict(Component.parse(f"transfer:{tail}" if tail else "transfer").params)
+    except BadInputError as error:
+        raise BadInputError(f"{place}: not of the form NAME,NAME:key=value,key=value") from error
+
+
+def borrowed_from_store(
+    store: Store, spec: LearningSpec, tell: Tell = str
+) -> tuple[Mask, tuple[Borrowed, ...]]:
+    """Return what a new run's camera sees, and what the run borrows from others of a database.
+
+    What the cameras of these saw is kept from now on.
+
+    Raises:
+        UsageError: a lender is not there, not finished, has no rows, or is another robot's; or
+            nothing carries over. The message says what to do.
+        NotSeenError: a camera does not see its tool.
+    """
+    if spec.transfer is None:
+        raise ValueError(f"the {spec.tool} borrows nothing")
+    there = store.transfers.lenders(spec.transfer.lenders)
+    if len(there) < len(spec.transfer.lenders):
+        raise UsageError(
+            f"{OPTION}: a run that the {one_line(spec.tool, 40)} borrows from was deleted; name "
+            f"others: {OPTION} RUN,..."
+        )
+    runs = [store.learning.run(number) for number in sorted(there.values())]
+    lenders = [_lender(store, run, spec, tell) for run in runs]
+    mask = mask_of(spec)
+    found = borrowed_by(spec, lenders, mask)
+    if not found:
+        numbers = ",".join(str(run.id) for run in runs)
+        more = shown(2.0 * max(spec.transfer.borrowing.limit, 0.1))
+        raise UsageError(
+            f"{OPTION} {numbers}: nothing carries over to the {one_line(spec.tool, 40)}; borrow "
+            f"from tools that are more like it, or allow more: {OPTION} {numbers}:limit={more}"
+        )
+    return mask, found
+
+
+def _lender(store: Store, run: LearningRunInfo, spec: LearningSpec, tell: Tell) -> Lender:
+    """Return a stored run as a lender of a new one."""
+    place, tool = f"{OPTION}: run {run.id}", one_line(run.spec.tool, 40)
+    if run.status != "done":
+        raise UsageError(f"{place} is not finished; go on with it first: affcli learn --resume")
+    if run.spec.logged:
+        raise UsageError(f"{place} comes from a log: no camera saw its {tool}; name another")
+    other = _difference(run.spec, spec)
+    if other:
+        raise UsageError(
+            f"{place} has {other} than this run; borrow from one that has the same, or learn with "
+            "what it has (affcli runs show)"
+        )
+    lender_rows = [one.row for one in store.learning.rows(run.id)]
+    seen = store.transfers.mask(run.id)
+    if seen is None:
+        seen = mask_of(run.spec)
+        store.transfers.save_mask(run.id, seen)
+        tell(f"run {run.id}: took the mask of its {tool} by its spec; it is kept from now on")
+    lender = lender_of(run.spec, lender_rows, seen)
+    if not lender.rows:
+        raise UsageError(f"{place} made no rows of its own with the {tool}; name another")
+    return lender
+
+
+def _difference(lender: LearningSpec, spec: LearningSpec) -> str:
+    """Return in what a lender differs from a run so that its rows would say other things."""
+    for what, one, two in (
+        ("other settings", lender.settings, spec.settings),
+        ("another world", lender.world, spec.world),
+        ("another repertoire", lender.repertoire, spec.repertoire),
+        ("another binding", lender.binding, spec.binding),
+    ):
+        if one != two:
+            return what
+    return ""
+
+
+def lenders_gone(store: Store, spec: LearningSpec) -> str:
+    """Return what is to be said of a run whose lenders were deleted; empty when they are there."""
+    if spec.transfer is None:
+        return ""
+    gone = len(spec.transfer.lenders) - len(store.transfers.lenders(spec.transfer.lenders))
+    if not gone:
+        return ""
+    return (
+        f"the {one_line(spec.tool, 40)}: {gone} of the runs that it borrowed from deleted; it goes "
+        "on with the rows that it has"
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Transferring:
+    """That the robots of a condition borrow from what each has learned itself.
+
+    Args:
+        tools: from which tools, by name; none lends to itself.
+        minutes: for how long they are learned.
+        borrowing: how.
+    """
+
+    tools: tuple[str, ...]
+    minutes: float
+    borrowing: Borrowing
+
+    @classmethod
+    def parse(cls, text: str) -> "Transferring":
+        """Return what ``t-hook,l-stick:minutes=60`` stands for.
+
+        Raises:
+            UsageError: there is no such tool.
+            BadInputError: a text of another form, or a wrong parameter.
+        """
+        place = f"transfer {one_line(text, 60)}"
+        head, _, tail = text.partition(":")
+        params = _params(tail, place)
+        minutes = params.pop("minutes", 60.0)
+        if isinstance(minutes, str) or not 0.0 < minutes <= 600_000.0:
+            raise BadInputError(f"{place}: minutes = {one_line(minutes, 40)} must be more than 0")
+        rest = ",".join(f"{key}={value}" for key, value in params.items())
+        names, borrowing = _parsed(f"{head}:{rest}" if rest else head, place)
+        tools = tuple(str(registry.part("tools", name).name) for name in names)
+        if len(set(tools)) < len(tools):
+            raise BadInputError(f"{place}: a tool comes twice")
+        return cls(tools, float(minutes), borrowing)
+
+    def __str__(self) -> str:
+        """Write it as `parse` reads it."""
+        params = [f"minutes={shown(self.minutes)}", *filter(None, (str(self.borrowing),))]
+        return f"{','.join(self.tools)}:{','.join(params)}"
+
+    def lenders(self, parts: RunParts, tool: str, seed: int, robot: int) -> list[LearningSpec]:
+        """Return the learning runs from which a robot with these parts borrows for a tool."""
+        others = (name for name in self.tools if name != tool)
+        return [parts.spec(name, seed, robot, self.minutes / 60.0) for name in others]
+
+    def of(self, lenders: Sequence[LearningSpec]) -> Transfer:
+        """Return the part of a spec that names lenders."""
+        return Transfer(tuple(sorted(one.key for one in lenders)), self.borrowing)
+
+
+def borrowed_of(store: Store, run_id: int) -> tuple[tuple[Borrowed, ...], dict[str, int]]:
+    """Return what a run borrowed, and the number of each lender's run that is there, by its key."""
+    borrowed = store.transfers.of_run(run_id)
+    return borrowed, store.transfers.lenders(sorted({one.lender for one in borrowed}))
+
+
+def whence(store: Store, stored: StoredRow) -> tuple[Borrowed, int | None] | None:
+    """Return where a row comes from and the number of the run that made it, None when that was
+    deleted; None for a row that was not borrowed.
+    """
+    if not stored.row.is_borrowed:
+        return None
+    for one in store.transfers.of_run(stored.run_id, stored.row.step):
+        return one, store.transfers.lenders([one.lender]).get(one.lender)
+    return None
