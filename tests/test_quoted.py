@@ -12,7 +12,9 @@ from affcli import registry
 from affcli.config import DEFAULTS, Settings, known_settings
 from affcli.core import affordance, affordance_table, change_detection, verification
 from affcli.core.geometry import Point
-from affcli.core.setting import LARGEST, SMALLEST
+from affcli.core.mask import SCALE
+from affcli.core.setting import LARGEST, SMALLEST, settings_of
+from affcli.core.transfer import Borrowing
 from affcli.planning import nested_query, prediction
 from affcli.simulation.table_world import TableWorld
 from affcli.simulation.worlds import TABLE_VERSION
@@ -84,6 +86,13 @@ def test_the_choices_where_the_paper_is_silent_have_theirs() -> None:
     assert prediction.RADIUS == 1.5
     assert (verification.INTACT, verification.CHANGED, verification.ERROR) == (0.02, 0.10, 0.01)
     assert TABLE_VERSION == 2
+
+
+def test_rows_are_borrowed_with_the_numbers_that_results_were_published_with() -> None:
+    usual = Borrowing()
+    assert (usual.way, usual.radius, usual.limit) == ("local", 2.1, 0.3)
+    assert (usual.each, usual.most, usual.shifts, usual.grown) == (60, 150, 2, 0.0)
+    assert SCALE == 0.1
 
 
 def test_goals_and_starts_lie_where_results_were_published_with() -> None:
@@ -165,6 +174,12 @@ LIMITS = {
         for name in registry.parts("planners")
     },
     "puck.mass_direction": (-360.0, 360.0),
+    "transfer: radius": (SMALLEST, 20.0),
+    "transfer: limit": (0.0, 100.0),
+    "transfer: each": (1, 10_000),
+    "transfer: most": (1, 10_000),
+    "transfer: shifts": (0, 100),
+    "transfer: grown": (0.0, 5.0),
     "tasks: anywhere: half_width": (0.1, 10.0),
     "tasks: anywhere: n": (1, 1000),
     "tasks: anywhere: seed": (0, 2**63 - 1),
@@ -176,6 +191,7 @@ def test_a_value_may_be_what_it_could_be_before_and_no_more() -> None:
     """A limit that moves refuses old files, or lets through what the engine cannot bear."""
     parts = [part for kind in registry.KINDS for part in registry.parts(kind).values()]
     params = {f"{p.kind}: {p.name}: {name}": one for p in parts for name, one in p.params.items()}
+    params |= {f"transfer: {name}": one for name, one in settings_of(Borrowing).items()}
     for name, one in (known_settings() | params).items():
         if not one.choices:
             least = 1 if isinstance(one.default, int) else SMALLEST

@@ -109,6 +109,12 @@ FIGURE = Group(
             "affcli figure row 17 --out fig5.pdf",
         ),
         Command(
+            "transfer",
+            "figure_learned:transfer",
+            "Draw what a run borrowed from others, and what it became.",
+            "affcli figure transfer --run 3 --out transfer.pdf",
+        ),
+        Command(
             "workspace",
             "figure_learned:workspace",
             "Draw the table: goals, starts, tool, reach of the arm.",

@@ -43,6 +43,7 @@ from affcli.report.captions import (
 )
 from affcli.simulation.arm import reach_at
 from affcli.simulation.tasks.extension_of_reach import extension_of_reach
+from affcli.simulation.tools.paper import TOOL_PARTS
 
 OneTool = Annotated[
     str | None,
@@ -131,6 +132,25 @@ def row(
 
 
 @figure
+def transfer(
+    *,
+    run: Run = None,
+    tool: OneTool = None,
+    database: Database = DEFAULT_DATABASE,
+) -> Figure:
+    """Draw what a run borrowed from others, and what it became.
+
+    A panel for each tool that lent, and one for the new tool, over the tools as the camera saw them
+    (§8).
+    """
+    if (run is None) == (tool is None):
+        raise UsageError("which run that borrowed? give --run or --tool")
+    with opened(database) as store:
+        words, tables = lab.transferring.lending(store, _chosen_run(store, run, tool))
+    return Figure(words, partial(figures.transfer.transfer_figure, tables))
+
+
+@figure
 def workspace(
     *,
     tool: Annotated[
@@ -172,7 +192,7 @@ def tools(
     """
     settings = load_settings(config, changes or ())
     place = settings.workspace
-    known = [registry.tool(name, place.tools) for name in registry.parts("tools")]
+    known = [registry.tool(name, place.tools) for name in TOOL_PARTS]
     becomes = becomes or DEFAULT_BROKEN
     whole, left = (registry.tool(name, place.tools) for name in (tool, becomes))
     if left.parts_missing_in(whole) or not whole.parts_missing_in(left):

@@ -133,7 +133,9 @@ def learn(
     own = (*own, repertoire, binding, explorer, world)
     _check_together(names, lengths, resume=resume, own=any((*own, note)))
     if minutes == 0.0 and transfer_from is None:
-        raise UsageError("--minutes 0 is for what only borrows: add --transfer-from RUN,...")
+        raise BadInputError(
+            "--minutes 0.0: must be more than 0, but for what only borrows: --transfer-from RUN,..."
+        )
     if minutes is not None:
         hours = minutes / 60.0
     elif behaviors is None and hours is None:

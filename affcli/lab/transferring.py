@@ -19,6 +19,8 @@ from affcli.core.world import ShowsTools
 from affcli.errors import BadInputError, UsageError, one_line
 from affcli.exploration.borrowing import Lender, borrow
 from affcli.lab.run_parts import RunParts, world_of
+from affcli.report.captions import Words
+from affcli.report.transferring import LentTable, lent_tables
 from affcli.store import Store
 
 TRANSFER = 6
@@ -248,6 +250,31 @@ def borrowed_of(store: Store, run_id: int) -> tuple[tuple[Borrowed, ...], dict[s
     """Return what a run borrowed, and the number of each lender's run that is there, by its key."""
     borrowed = store.transfers.of_run(run_id)
     return borrowed, store.transfers.lenders(sorted({one.lender for one in borrowed}))
+
+
+def lending(store: Store, run: LearningRunInfo) -> tuple[Words, list[LentTable]]:
+    """Return what a figure shows of what a run borrowed; nothing is saved.
+
+    Raises:
+        UsageError: it borrowed nothing.
+    """
+    borrowed, there = borrowed_of(store, run.id)
+    if not borrowed:
+        raise UsageError(
+            f"run {run.id} of the {one_line(run.spec.tool, 40)} borrowed nothing; name one that "
+            f"did (affcli learn {OPTION} RUN,...)"
+        )
+    lenders = []
+    for number in sorted(there.values()):
+        lender = store.learning.run(number)
+        rows = [one.row for one in store.learning.rows(number) if not one.row.is_borrowed]
+        lenders.append((lender, _mask_shown(store, lender), rows))
+    return lent_tables(run, _mask_shown(store, run), borrowed, lenders)
+
+
+def _mask_shown(store: Store, run: LearningRunInfo) -> Mask:
+    """Return the mask of a run, as it is stored or as it would be."""
+    return store.transfers.mask(run.id) or mask_of(run.spec)
 
 
 def whence(store: Store, stored: StoredRow) -> tuple[Borrowed, int | None] | None:

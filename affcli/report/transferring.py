@@ -2,11 +2,87 @@
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
 from typing import Any
 
+from affcli.core.affordance import Affordance
+from affcli.core.mask import Mask
+from affcli.core.records import LearningRunInfo
 from affcli.core.transfer import Borrowed
 from affcli.errors import one_line
+from affcli.report.captions import Words, joined, run_caption
+from affcli.report.figures.words import tool_words
 from affcli.report.sheet import Sheet
+from affcli.report.words import many
+
+
+class Kind(Enum):
+    """What became of a row of a lender, in words."""
+
+    LEFT = "not borrowed"
+    SAME = "as it was"
+    SHIFTED = "shifted"
+    MIRRORED = "mirrored, maybe shifted"
+
+    @classmethod
+    def of(cls, one: Borrowed) -> "Kind":
+        """Return what became of a row that was borrowed."""
+        if one.mirrored:
+            return cls.MIRRORED
+        return cls.SHIFTED if any(one.shift) else cls.SAME
+
+
+@dataclass(frozen=True, slots=True)
+class LentTable:
+    """Rows over the tool that they are of, as a figure shows them.
+
+    Args:
+        heading: what stands over it.
+        mask: of the tool.
+        rows: each with what became of it.
+    """
+
+    heading: str
+    mask: Mask
+    rows: Sequence[tuple[Affordance, Kind]]
+
+
+def lent_tables(
+    run: LearningRunInfo,
+    mask: Mask,
+    borrowed: Sequence[Borrowed],
+    lenders: Sequence[tuple[LearningRunInfo, Mask, Sequence[Affordance]]],
+) -> tuple[Words, list[LentTable]]:
+    """Return what a figure shows of a run that borrowed.
+
+    A row of a lender that was borrowed in several ways is shown as the plainest of them.
+
+    Args:
+        run: which.
+        mask: what its camera saw of its tool.
+        borrowed: what it borrowed.
+        lenders: each that is still there, with its mask and its own rows.
+    """
+    tables = []
+    for lender, seen, rows in lenders:
+        own = [one for one in borrowed if one.lender == lender.spec.key]
+        became = {kind: {one.step for one in own if Kind.of(one) is kind} for kind in Kind}
+        plainest = (Kind.SAME, Kind.SHIFTED, Kind.MIRRORED)
+        shown = [
+            (row, next((kind for kind in plainest if row.step in became[kind]), Kind.LEFT))
+            for row in rows
+        ]
+        lent = len({one.step for one in own})
+        name = f"{tool_words(lender.spec.tool)}, run {lender.id}"
+        heading = f"{name}: {lent} of {len(rows)} rows lent"
+        tables.append(LentTable(heading, seen, shown))
+    heading = f"{tool_words(run.spec.tool)}, run {run.id}: {len(borrowed)} rows borrowed"
+    tables.append(LentTable(heading, mask, [(one.row, Kind.of(one)) for one in borrowed]))
+    gone = len({one.lender for one in borrowed}) - len(lenders)
+    missing = f"{many(gone, 'lender')} not there any more" if gone else ""
+    title = f"Carried over to the {tool_words(run.spec.tool)}"
+    return Words(title, joined(run_caption(run), missing)), tables
 
 
 def borrowed_words(one: Borrowed, lender: int | None) -> str:

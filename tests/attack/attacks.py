@@ -15,6 +15,7 @@ WRITERS: tuple[Args, ...] = (
     ("learn", "--tool", "TOOL", "--behaviors", "SOME", "--seed", "SEED"),
     ("learn", "--tool", "TOOL", "--seed", "SEED", "--config", "settings.toml"),
     ("learn", "--resume"),
+    ("learn", "--tool", "TOOL", "--minutes", "0", "--transfer-from", "1,2", "--seed", "SEED"),
     ("invent", "--tool", "TOOL", "--minutes", "6", "--seed", "SEED"),
     ("solve", "--goal", "GOAL"),
     ("solve", "--goal", "GOAL", "--tool", "t-hook", "--start", "2"),
@@ -33,8 +34,9 @@ WRITERS: tuple[Args, ...] = (
 """What writes into a database, or a copy of it; `db upgrade` is given one of an older schema."""
 WRITING = {"learn", "solve", "break-tool", "reproduce", "db upgrade", "db backup"}
 WRITING |= {"experiment", "invent", "import", "runs note", "runs delete", "db merge"}
-NOT_THERE = {"compare", "figure compare", "figure plan"}
-"""What needs two conditions of one seed, or a plan, which the database under attack has not."""
+NOT_THERE = {"compare", "figure compare", "figure plan", "figure transfer"}
+"""What needs two conditions of one seed, a plan, or a run that borrowed: the database under attack
+has none."""
 MOST_READ = {"figure", "report", "replay"}
 """Half of what is drawn of all commands begins so: it reads most of a database."""
 BY_WORD = {"--robots": ("1", "2"), "--workers": ("1",), "--speed": ("1000",)}
@@ -159,6 +161,7 @@ NEED: dict[str, Args] = {
     "which": ("nearer",),
     "figure row": ("1", "--out", "new.svg", "--force"),
     "figure plan": ("1", "1", "--out", "new.svg", "--force"),
+    "figure transfer": ("--run", "1", "--out", "new.svg", "--force"),
     "figure trial": ("1", "--out", "new.svg", "--force"),
     "figure prediction": ("--pushes", "3", "--out", "new.svg", "--force"),
 }

@@ -6,7 +6,10 @@ import pytest
 
 from tests.cli.program import affcli, names_in, refused
 
-TOOLS = "stick or l-stick or l-hook or t-stick or t-hook"
+TOOLS = (
+    "stick or l-stick or l-hook or t-stick or t-hook or mirrored-hook or garden-rake or fork or "
+)
+TOOLS += "longer-handle or wide-hook"
 
 USAGE = {
     "unknown command": (("lern",), "'lern'. Did you mean 'learn'?"),
@@ -17,7 +20,7 @@ USAGE = {
     "too many arguments": (("report", "extra"), "unexpected extra argument"),
     "option before its command": (("--db", "x.db", "report"), "No such option: --db"),
     "unknown subcommand": (("db", "upgrad"), "Did you mean 'upgrade'?"),
-    "no tool": (("learn",), "give --tool stick|l-stick|l-hook|t-stick|t-hook, or --all-tools"),
+    "no tool": (("learn",), "give --tool stick|l-stick|l-hook|t-stick|t-hook|mirrored-hook|"),
     "unknown tool": (("learn", "--tool", "t-hok"), "no tool 't-hok'; did you mean t-hook or "),
     "far from any tool": (("learn", "--tool", "zzz"), f"did you mean {TOOLS}?"),
     "no name at all": (("learn", "--tool", ""), f"no tool ''; did you mean {TOOLS}?"),
@@ -55,7 +58,7 @@ LOOKED_UP = {
     "unknown broken tool": (("break-tool", "--becomes", "l-hoo"), "did you mean l-hook"),
     "same tool": (("break-tool", "--becomes", "t-hook"), "must be another tool than it was"),
     "unknown shape": (("verify", "--shape", "[/]"), "no tool '[/]'"),
-    "unknown tool to predict": (("predict", "--tool", "fork"), "no tool 'fork'"),
+    "unknown tool to predict": (("predict", "--tool", "spoon"), "no tool 'spoon'"),
     "unknown run": (("verify", "--run", "9"), "no learning run 9; they are numbered 1 to 2"),
     "run of another tool": (("predict", "--run", "1", "--tool", "stick"), "is of the t-hook"),
 }

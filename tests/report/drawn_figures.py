@@ -10,6 +10,8 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from affcli.analysis.comparison import Beside, Results
 from affcli.analysis.curves import Curve, ToolCurves
 from affcli.analysis.prediction import Prediction, Push
@@ -17,6 +19,7 @@ from affcli.analysis.row_status import RowStatus, compared
 from affcli.behaviors.moving import paper_repertoire
 from affcli.core.affordance import Affordance
 from affcli.core.geometry import Point
+from affcli.core.mask import Mask
 from affcli.core.tool import ToolName, unknown_tool
 from affcli.core.workspace import Workspace
 from affcli.report.figures.affordances import affordances_figure
@@ -26,10 +29,12 @@ from affcli.report.figures.prediction import prediction_figure
 from affcli.report.figures.results import results_figure
 from affcli.report.figures.row import row_figure
 from affcli.report.figures.tools import tools_figure
+from affcli.report.figures.transfer import transfer_figure
 from affcli.report.figures.trial import trial_figure
 from affcli.report.figures.workspace import workspace_figure
 from affcli.report.film import FilmedTrial, Shown, shown_of
 from affcli.report.table_views import RowView, TableView
+from affcli.report.transferring import Kind, LentTable
 from affcli.simulation.arm import reach_at
 from affcli.simulation.tasks.extension_of_reach import extension_of_reach
 from affcli.simulation.tools.paper import paper_tools
@@ -131,6 +136,13 @@ def strip() -> tuple[FilmedTrial, Shown]:
     return trial, shown_of(trial.steps, None)
 
 
+def lent() -> list[LentTable]:
+    """Return what two tools lent to a third."""
+    mask = Mask.of(np.ones((8, 140), dtype=bool), -4, 0, (200.0, 40.0, 40.0))
+    rows = [(row, list(Kind)[number % 4]) for number, row in enumerate(table())]
+    return [LentTable(f"{name}, run 1: 3 of 9 rows lent", mask, rows) for name in ("a", LONG, "c")]
+
+
 FIGURES: dict[str, "Callable[[float | None], Figure]"] = {
     "affordances": partial(
         affordances_figure, CALLS, [view([(row, RowStatus.LIVE) for row in table()])], KEY
@@ -143,6 +155,7 @@ FIGURES: dict[str, "Callable[[float | None], Figure]"] = {
     "bands": partial(bands_figure, bands()),
     "results": partial(results_figure, Results(session_of(5), 20, {}, CELLS, *SUMS)),
     "prediction": partial(prediction_figure, pushes()),
+    "transfer": partial(transfer_figure, lent()),
     "trial": partial(trial_figure, *strip()),
 }
 """Each as wide as asked (in), or as suits it."""

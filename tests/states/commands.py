@@ -85,6 +85,9 @@ USED = (LEARN, "solve --goal 2 --start 1 --tool t-hook")
 WRITING = {
     "learn": Writing(LEARN),
     "learn, through a camera": Writing("learn --tool stick --behaviors 4 --sensor camera"),
+    "learn, carrying over": Writing(
+        "learn --tool fork --behaviors 4 --transfer-from 1,2:shifts=0", (LEARN,)
+    ),
     "invent": Writing("invent --tool stick --minutes 6"),
     "solve": Writing("solve --goal 3", (LEARN,), anew=True),
     "break-tool": Writing("break-tool", (LEARN,), anew=True),

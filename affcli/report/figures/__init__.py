@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from affcli.report.figures import results as results
     from affcli.report.figures import row as row
     from affcli.report.figures import tools as tools
+    from affcli.report.figures import transfer as transfer
     from affcli.report.figures import trial as trial
     from affcli.report.figures import workspace as workspace
 
