@@ -61,6 +61,9 @@ DEFAULTS: Mapping[str, str] = {
 GRIP = 0.5
 """How far the handle may lie beside the wrist (in)."""
 
+MOST_BINDINGS = 20
+"""Ways in which one robot may hold a tool."""
+
 REMEDY = "install what made the record"
 """What to do about a record that names a part which is not here."""
 
@@ -144,6 +147,27 @@ def binding(text: str, geometry: "ToolGeometry") -> BehaviorCall:
     made: BehaviorCall = chosen.build(geometry, **chosen.checked(given))
     hold_of(made)  # the robots know no binding but the grasp: better said before a run begins
     return made
+
+
+def bindings(texts: Sequence[str], geometry: "ToolGeometry") -> tuple[BehaviorCall, ...]:
+    """Return the binding behaviors that several texts name, in order, for tools of these sizes.
+
+    Raises:
+        UsageError: two of them hold the tool the same, or they are too many; or as `component`.
+        BadInputError: as `component`, or one of them takes the tool where there is no handle.
+    """
+    if len(texts) > MOST_BINDINGS:
+        raise UsageError(f"--binding: {len(texts)} of them; give at most {MOST_BINDINGS}")
+    chosen: dict[tuple[float, float], BehaviorCall] = {}
+    for text in texts:
+        made = binding(text, geometry)
+        held = made["grasp_point"], made.get("angle", 0.0) % 360.0
+        if held in chosen:
+            raise UsageError(
+                f"--binding {one_line(text, 60)}: {one_line(made, 60)} comes twice; leave one out"
+            )
+        chosen[held] = made
+    return tuple(chosen.values())
 
 
 def repertoire(parts_of_it: Sequence[str | ExploratoryBehavior]) -> Repertoire:
@@ -261,11 +285,22 @@ def require_own_tool(made: Tool, geometry: "ToolGeometry", source: str) -> None:
                 f"{source}: its color is taken for that of the {name} (it is within "
                 f"{COLOR_TOLERANCE:g} of it); paint it otherwise"
             )
+    require_handle(made, geometry.handle_below_grasp, source)
+
+
+def require_handle(made: Tool, grasp_point: float, source: str) -> None:
+    """Make sure that there is something of a tool where it is to be grasped: BadInputError.
+
+    Args:
+        made: the tool.
+        grasp_point: above its lower end (in).
+        source: where it comes from, for the message.
+    """
     lower_end = min(outline.bounds[1] for outline in made.outlines)
-    if not near_any(made.outlines, Point(0.0, lower_end + geometry.handle_below_grasp), GRIP):
+    if not near_any(made.outlines, Point(0.0, lower_end + grasp_point), GRIP):
         raise BadInputError(
-            f"{source}: nothing to grasp at x = 0, {geometry.handle_below_grasp:g} in above its "
-            "lower end; let the handle lie there"
+            f"{source}: nothing to grasp at x = 0, {grasp_point:g} in above its lower end; let the "
+            "handle lie there"
         )
 
 

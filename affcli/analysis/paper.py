@@ -133,8 +133,8 @@ def other_parts(
     if more or less:
         parts["behaviors"] = ", ".join(more + less)
     point = json.loads(spec.settings).get("tools.handle_below_grasp", _HANDLE_BELOW_GRASP)
-    if (spec.binding.name, spec.binding.params) != (GRASP, (("grasp_point", point),)):
-        parts["binding"] = named(spec.binding)
+    if [(one.name, one.params) for one in spec.bindings] != [(GRASP, (("grasp_point", point),))]:
+        parts["binding"] = " or ".join(map(named, spec.bindings))
     others = {"world": (spec.world, WORLD), "explorer": (spec.explorer, EXPLORER)}
     if isinstance(spec, LearningSpec) and spec.transfer is not None:
         parts["borrowed from"] = str(spec.transfer)

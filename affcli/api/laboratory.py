@@ -75,7 +75,7 @@ class Laboratory:
         seed: int = 0,
         settings: Mapping[str, Value] | None = None,
         repertoire: Sequence[str] = (),
-        binding: str | None = None,
+        binding: str | Sequence[str] | None = None,
         explorer: str | None = None,
         sensor: str | None = None,
         world: str | None = None,
@@ -91,7 +91,8 @@ class Laboratory:
             hours, minutes, behaviors: how long: one of them; an hour if not given.
             seed: 0 to 2^63 - 1.
             settings: that differ from the defaults, as ``{"sensor.position_noise": 0.02}``.
-            repertoire, binding, explorer, world: parts as text, ``"name:key=value"``.
+            repertoire, binding, explorer, world: parts as text, ``"name:key=value"``; of bindings
+                one, or several.
             sensor: ``noisy``, ``exact`` or ``camera``.
             note: what you want to remember of it.
 

@@ -24,7 +24,8 @@ def grasp(
     end = geometry.handle_below_grasp + geometry.handle_length
     if point > end:
         raise BadInputError(
-            f"grasp: grasp_point = {point:g} lies beyond the end of the handle, at {end:g} in"
+            f"grasp: grasp_point = {point:g} lies beyond the end of the handle, at {end:g} in; "
+            "give a lower one"
         )
     return BehaviorCall.of(GRASP, {"grasp_point": point, **({"angle": angle} if angle else {})})
 

@@ -142,4 +142,4 @@ def _stored_scene(
     with opened(database) as store:
         if trial is not None:
             return store.trials.scene(trial, step)
-        return store.learning.scene(run or 0, step)
+        return lab.viewing.scene_of_behavior(store, run or 0, step)

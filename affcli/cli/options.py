@@ -234,10 +234,10 @@ Repertoire = Annotated[
     ),
 ]
 Binding = Annotated[
-    str | None,
+    list[str] | None,
     typer.Option(
         "--binding",
-        help="How the tool is held (default: grasp).",
+        help="How the tool is held; several times for several (default: grasp).",
         metavar=PART,
         autocompletion=names_of("bindings"),
     ),

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from affcli.core.affordance import PROBABILITY_THRESHOLD, Affordance, is_probable
+from affcli.core.behavior import BehaviorCall
 from affcli.core.observation import Observation
 
 Rows = NDArray[np.intp]
@@ -87,6 +88,26 @@ class AffordanceTable:
             self._made[key] = make(self)
         made: Made = self._made[key]
         return made
+
+    def made_otherwise(self, holding: BehaviorCall | None) -> NDArray[np.bool_] | None:
+        """Return whether each row was made with another grasp than this (n,); None when none was,
+        or it is not known how the tool is held.
+        """
+        number, numbers = self.once("bindings", AffordanceTable._bindings)
+        if holding is None or number.keys() <= {holding}:
+            return None
+        return np.asarray(numbers != number.get(holding, -1))
+
+    def _bindings(self) -> tuple[dict[BehaviorCall, int], Rows]:
+        """Number the binding behaviors of the rows; return these, and the number of each row (n,).
+
+        Rows that were read share a few calls: to compare a million of them would take seconds.
+        """
+        calls = {id(row.binding): row.binding for row in self._rows}
+        number = {call: n for n, call in enumerate(dict.fromkeys(calls.values()))}
+        by_id = {key: number[call] for key, call in calls.items()}
+        numbers = np.array([by_id[id(row.binding)] for row in self._rows], dtype=np.intp)
+        return number, numbers
 
     def with_colors_of(self, seen: Observation) -> Rows:
         """Return the rows whose object and tool colours are consistent with `seen`, to be read."""

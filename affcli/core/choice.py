@@ -104,7 +104,8 @@ class Candidate(NamedTuple):
     Args:
         position: its position in the table.
         expected_distance: how far from the goal's centre it expects to leave the attractor (in).
-        repositioning: how far the wrist would travel to use it (in).
+        repositioning: how far the wrist would travel to use it, and what taking the tool anew
+            counts for (in).
     """
 
     position: int

@@ -72,7 +72,8 @@ class Parts:
         settings: those that differ from the defaults, as canonical JSON (see `affcli.config`).
         world: where it takes place.
         repertoire: the exploratory behaviors, by value.
-        binding: how the tool is held.
+        binding: how the tool is held; where there are several, how trials begin.
+        other_bindings: how else it may be held: babbling draws from all of them (§3.2).
         explorer: how the robot chooses what to try next.
         sensor: through what the robot sees.
     """
@@ -83,6 +84,12 @@ class Parts:
     binding: BehaviorCall
     explorer: Component
     sensor: SensorKind
+    other_bindings: tuple[BehaviorCall, ...] = ()
+
+    @property
+    def bindings(self) -> tuple[BehaviorCall, ...]:
+        """All ways in which the tool may be held, the first as trials begin."""
+        return (self.binding, *self.other_bindings)
 
     @property
     def logged(self) -> bool:
@@ -100,8 +107,10 @@ class Parts:
 
     def canonical(self) -> dict[str, Any]:
         """Return all of it as JSON types; what a key is made of, so it must never change."""
+        bindings = [{"name": one.name, "params": dict(one.params)} for one in self.bindings]
         return {
-            "binding": {"name": self.binding.name, "params": dict(self.binding.params)},
+            # Several are a list. One stands alone, as it did before there could be several.
+            "binding": bindings if self.other_bindings else bindings[0],
             "explorer": self.explorer.canonical(),
             "repertoire": repertoire_json(self.repertoire),
             "sensor": self.sensor,

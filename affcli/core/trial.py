@@ -5,7 +5,7 @@ from enum import StrEnum
 from typing import Any, NamedTuple
 
 from affcli.core.affordance import Affordance, is_probable
-from affcli.core.behavior import Execution
+from affcli.core.behavior import BehaviorCall, Execution
 from affcli.core.choice import Reasons
 from affcli.core.geometry import Pose
 from affcli.core.observation import Movement, Observation
@@ -144,6 +144,7 @@ class BabblingRecord:
         start: observation before the exploratory behavior (O^s).
         end: observation after it (O^e).
         affordance: the row it made, None when T = 0.
+        binding: how the tool was held, where the run has several bindings; None where it has one.
     """
 
     step: int
@@ -155,6 +156,7 @@ class BabblingRecord:
     start: Observation
     end: Observation
     affordance: Affordance | None
+    binding: BehaviorCall | None = None
 
 
 class TrialStep(NamedTuple):

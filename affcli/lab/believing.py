@@ -84,7 +84,9 @@ def _pushes(spec: LearningSpec) -> tuple[LearningStep, ...]:
 
 
 def belief_of(spec: LearningSpec) -> "Belief":
-    """Return what a baseline believes whose table is a function of `spec`."""
+    """Return what a baseline believes whose table is a function of `spec`; of several grasps it
+    takes the first.
+    """
     from affcli.baselines.beliefs.pushes import Belief
 
     settings, told = settings_of(spec), dict(spec.explorer.params)

@@ -32,7 +32,7 @@ from affcli.core.specs import BROKEN_SHAPE, BROKEN_TOOL
 from affcli.errors import BadInputError, UsageError, one_line
 from affcli.lab.believing import is_told
 from affcli.lab.experiment import ADAPTATION, ADAPTATION_TASKS, Condition, Experiment
-from affcli.lab.inventing import Inventing, are_invented
+from affcli.lab.inventing import EXPLORER, Inventing, are_invented
 from affcli.lab.own_parts import TABLES as OWN_TABLES
 from affcli.lab.own_parts import OwnParts
 from affcli.lab.run_parts import RunParts, tasks_of
@@ -52,6 +52,8 @@ NAMED: Mapping[str, Kind] = {
 }
 """What a condition says by the names of parts."""
 LISTS = ("tools", "repertoire", "tasks")
+SEVERAL = "binding"
+"""What may be one name, or a list of several."""
 KEYS = (*NAMED, "hours", "minutes", "sensor", "settings", "transfer")
 """What a condition may say; and each setting as ``section.key``."""
 USUAL: Mapping[str, Any] = {
@@ -304,10 +306,12 @@ def _said(table: Mapping[str, Any], place: str, own_parts: OwnParts) -> Said:
 
 def _parts(key: str, value: object, own_parts: OwnParts) -> str | list[str]:
     """Return the parts that are asked for by name or file, each by its name as it is written."""
-    given: list[object] = value if isinstance(value, list) and key in LISTS else [value]
+    several = (*LISTS, SEVERAL)
+    given: list[object] = value if isinstance(value, list) and key in several else [value]
     texts = [one for one in given if isinstance(one, str)]
     if key not in NAMED or not texts or texts != given:
         kind = "names in a list" if key in LISTS else "a name"
+        kind += ", or several in a list" if key == SEVERAL else ""
         raise BadInputError(f"{one_line(value, 40)} must be {kind}")
     found = []
     for text in texts:
@@ -326,7 +330,7 @@ def _parts(key: str, value: object, own_parts: OwnParts) -> str | list[str]:
     for one, other in combinations(found, 2):
         if one == other:
             raise BadInputError(f"{one} comes twice")
-    return found if key in LISTS else found[0]
+    return found if key in LISTS or len(found) > 1 else found[0]
 
 
 def _condition(name: str, said: Said, own_parts: OwnParts) -> tuple[Condition, dict[str, Any]]:
@@ -345,6 +349,8 @@ def _condition(name: str, said: Said, own_parts: OwnParts) -> tuple[Condition, d
         repertoire=own_parts.repertoire(given),
         **{key: own[key] for key in ("binding", "explorer", "world")},
     )
+    if parts.other_bindings and parts.explorer.name == EXPLORER:
+        raise BadInputError(f"binding: robots that explore by {EXPLORER} take one grasp; give one")
     planner = registry.component("planners", own["planner"])
     registry.planner(planner)
     tools, tasks = own_parts.tools(own["tools"]), own_parts.tasks(own["tasks"])

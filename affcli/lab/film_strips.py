@@ -1,11 +1,12 @@
 """A stored trial, gathered for its film strip."""
 
+from affcli.core.behavior import BehaviorCall
 from affcli.core.geometry import Pose
-from affcli.core.tool import ToolPart, known_hold
+from affcli.core.tool import Tool, known_hold
 from affcli.errors import UsageError
 from affcli.lab.run_parts import require_shape, settings_of
 from affcli.report.captions import trial_words
-from affcli.report.film import FilmedTrial
+from affcli.report.film import FilmedTrial, Held
 from affcli.report.words import call_words
 from affcli.store import Store
 
@@ -33,25 +34,33 @@ def film_of(store: Store, trial_id: int, wanted: tuple[int, int] | None = None) 
     spec, learned = info.spec, info.learned
     workspace, hold = settings_of(learned).workspace, known_hold(learned.binding)
     title, caption = trial_words(info, store.learning.run(info.run_id))
-    parts: tuple[ToolPart, ...] = ()
-    missing = parts
     unknown = f"; tool not drawn: held by {call_words(learned.binding)}" if hold is None else ""
-    if hold is not None:
-        held = spec.held.held(hold)
-        parts, missing = held.parts, learned.held.held(hold).parts_missing_in(held)
+    bindings = dict.fromkeys([learned.binding, *(step.row.binding for step in steps)])
+    held = {binding: _held(binding, spec.held, learned.held) for binding in bindings}
+    at_start = held.pop(learned.binding)
     return FilmedTrial(
         title=title,
         caption=caption + unknown,
         ending=None if info.outcome is None else info.outcome.value,
-        parts=parts,
-        missing=missing,
+        parts=at_start.parts,
+        missing=at_start.missing,
         goal=spec.task.goal,
         wrist=Pose(*workspace.wrist_start),
         puck=spec.task.start,
         puck_radius=workspace.puck.radius,
         table=workspace.table,
         steps=steps,
+        regrasped=held,
     )
+
+
+def _held(binding: BehaviorCall, shape: Tool, believed: Tool) -> Held:
+    """Return what was held by a binding behavior; nothing when it is not known how that holds."""
+    hold = known_hold(binding)
+    if hold is None:
+        return Held((), ())
+    held = shape.held(hold)
+    return Held(held.parts, believed.held(hold).parts_missing_in(held))
 
 
 def _require_steps(trial_id: int, wanted: tuple[int, int], count: int) -> None:

@@ -73,9 +73,11 @@ class Inventing:
         return f"{INVENTED}:tool={self.tool},minutes={shown(self.minutes)}"
 
     def spec(self, parts: RunParts, seed: int, robot: int) -> LearningSpec:
-        """Return the learning run in which a robot with these parts invents."""
+        """Return the learning run in which a robot with these parts invents: with the first of its
+        grasps.
+        """
         way = registry.component("explorers", explorer(self.minutes))
-        own = replace(parts, explorer=way)
+        own = replace(parts, explorer=way, other_bindings=())
         return own.spec(self.tool, seed, robot, self.minutes / 60.0)
 
 

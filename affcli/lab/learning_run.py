@@ -8,9 +8,9 @@ from affcli.core.invention import Invention, Inventor
 from affcli.core.observation import Observation
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import LearningSpec, LearningStep
-from affcli.errors import DatabaseError
+from affcli.errors import BadInputError, DatabaseError
 from affcli.lab.run_parts import settings_of, world_of
-from affcli.procedures.babbling import BabblingState, babble
+from affcli.procedures.babbling import BabblingState, OtherGrasps, babble
 
 
 class LearningRun:
@@ -26,7 +26,8 @@ class LearningRun:
         calibration: of the camera that the robot sees through, as JSON; None without one.
 
     Raises:
-        BadInputError: a part that this affcli lacks, or has in another version.
+        BadInputError: a part that this affcli lacks, or has in another version; an explorer that
+            invents, with several grasps.
         DatabaseError: settings or a tool that it does not know.
         ValueError, KeyError, TypeError: the checkpoint is none that `checkpoint` gives.
     """
@@ -36,7 +37,16 @@ class LearningRun:
         self.world = world_of(spec, again=True)
         self.setting = self.world.learning(spec, laid_out=checkpoint is None)
         self.calibration = self.setting.calibration
-        self._explorer = registry.explorer(spec.explorer, self.setting, settings_of(spec))
+        settings = settings_of(spec)
+        self._explorers = {
+            binding: registry.explorer(spec.explorer, self.setting, settings)
+            for binding in spec.bindings
+        }
+        self._explorer = self._explorers[spec.binding]
+        if spec.other_bindings and isinstance(self._explorer, Inventor):
+            raise BadInputError(
+                f"explorer {spec.explorer.name}: invents with one grasp; give one --binding"
+            )
         self._state = BabblingState()
         if checkpoint is not None:
             self._restore(checkpoint)
@@ -47,6 +57,7 @@ class LearningRun:
         The behavior during which the time runs out is the last.
         """
         setting = self.setting
+        others = {one: self._explorers[one] for one in self.spec.other_bindings}
         records = babble(
             setting.robot,
             setting.sensor,
@@ -54,6 +65,7 @@ class LearningRun:
             setting.binding,
             self._explorer,
             self._state,
+            others=OtherGrasps(others, setting.choices) if others else None,
         )
         while not self.done:
             yield next(records), setting.truth()
@@ -86,11 +98,12 @@ class LearningRun:
         snapshot = self.setting.snapshot()
         if snapshot is None:
             return None
+        states = [explorer.state() for explorer in self._explorers.values()]
         return {
             "step": self._state.step,
             "grasped": self._state.grasped,
             "seen": self._state.seen,
-            "explorer": self._explorer.state(),
+            "explorer": states if self.spec.other_bindings else states[0],
             **snapshot,
         }
 
@@ -101,7 +114,10 @@ class LearningRun:
         self._state.grasped = bool(checkpoint["grasped"])
         self._state.seen = None if seen is None else Observation(*map(float, seen))
         # Runs that were begun before explorers had names explored at random, and remember nothing.
-        self._explorer.restore(checkpoint.get("explorer", {}))
+        state = checkpoint.get("explorer", {})
+        states = state if self.spec.other_bindings else [state]
+        for explorer, own in zip(self._explorers.values(), states, strict=True):
+            explorer.restore(own)
         self.setting.restore(checkpoint)
 
 

@@ -22,7 +22,7 @@ from affcli.core.trial import BabblingRecord
 from affcli.errors import UsageError
 from affcli.lab.run_parts import require_robot, settings_of, world_of
 from affcli.planning.prediction import TablePredictor
-from affcli.procedures.babbling import BabblingState, babble
+from affcli.procedures.babbling import BabblingState, OtherGrasps, babble
 from affcli.store import Store
 
 
@@ -34,14 +34,20 @@ def fresh_pushes(spec: VerificationSpec, learned: LearningSpec) -> Iterator[Babb
         learned: how the table was learned.
     """
     setting = world_of(learned).prediction(spec, learned)
-    explorer = Component(registry.DEFAULTS["explorer"])
+    settings = settings_of(learned, spec.sensor)
+    chosen = Component(registry.DEFAULTS["explorer"])
+    explorers = {
+        binding: registry.explorer(chosen, setting, settings) for binding in learned.bindings
+    }
+    first = explorers.pop(learned.binding)
     records = babble(
         setting.robot,
         setting.sensor,
         setting.experimenter,
         setting.binding,
-        registry.explorer(explorer, setting, settings_of(learned, spec.sensor)),
+        first,
         BabblingState(),
+        others=OtherGrasps(explorers, setting.choices) if explorers else None,
         elsewhere=True,
     )
     return islice(records, spec.tries)
@@ -65,13 +71,19 @@ class StagedTable:
             moved=record.affordance is not None,
             seen=movement(record.start, record.end),
             wrist=Movement(end.x - start.x, end.y - start.y, 0.0),
-            predicted=self.asked(record.execution.call, record.start.wrist_to_object),
+            predicted=self.asked(
+                record.execution.call, record.start.wrist_to_object, held=record.binding
+            ),
         )
 
-    def asked(self, call: BehaviorCall, at: Point, without: int = 0) -> dict[int, Prediction]:
-        """Return what each stage predicts; the row of the step `without` is not asked."""
+    def asked(
+        self, call: BehaviorCall, at: Point, without: int = 0, held: BehaviorCall | None = None
+    ) -> dict[int, Prediction]:
+        """Return what each stage predicts; see `TablePredictor.predict`."""
         return {
-            number: Prediction(table.predict(call, at, without), table.mean_movement(call, without))
+            number: Prediction(
+                table.predict(call, at, without, held), table.mean_movement(call, without, held)
+            )
             for number, table in self._stages.items()
         }
 

@@ -32,12 +32,12 @@ class RunParts(Parts):
         settings: Settings,
         *,
         repertoire: Sequence[str | ExploratoryBehavior] = (),
-        binding: str | None = None,
+        binding: str | Sequence[str] | None = None,
         explorer: str | None = None,
         world: str | None = None,
     ) -> "RunParts":
         """Return the parts that a user named, each as ``name:key=value``; the paper's for the rest.
-        Behaviors also by their files, or by value.
+        Behaviors also by their files, or by value; of bindings one, or several.
 
         Raises:
             UsageError: no part of that name, or the camera's packages are missing.
@@ -46,11 +46,14 @@ class RunParts(Parts):
         if settings.sensor.kind == "camera":
             require_camera()
         usual = registry.DEFAULTS
+        texts = [binding] if isinstance(binding, str) else [*(binding or [usual["binding"]])]
+        first, *others = registry.bindings(texts, settings.workspace.tools)
         return cls(
             settings=canonical_json(settings.differing()),
             world=registry.component("worlds", world or usual["world"]),
             repertoire=registry.repertoire(repertoire or [usual["repertoire"]]),
-            binding=registry.binding(binding or usual["binding"], settings.workspace.tools),
+            binding=first,
+            other_bindings=tuple(others),
             explorer=registry.component("explorers", explorer or usual["explorer"]),
             sensor=settings.sensor.kind,
         )
@@ -76,11 +79,18 @@ class RunParts(Parts):
 
     def tool(self, tool: str | Tool) -> Tool:
         """Return a tool: a registered one by its name in these settings' sizes, a person's own by
-        its file or by its value; UsageError for an unknown one.
+        its file or by its value.
+
+        Raises:
+            UsageError: there is none of this name.
+            BadInputError: there is nothing of it where it is to be grasped.
         """
-        if isinstance(tool, Tool):
-            return tool
-        return registry.tool(tool, settings_of_text(self.settings).workspace.tools)
+        sizes = settings_of_text(self.settings).workspace.tools
+        made = tool if isinstance(tool, Tool) else registry.tool(tool, sizes)
+        for point in (one["grasp_point"] for one in self.bindings):
+            if point != sizes.handle_below_grasp:
+                registry.require_handle(made, point, f"tool {one_line(made.name, 40)}")
+        return made
 
 
 def beyond_the_box(learned: LearningSpec) -> str:
@@ -91,7 +101,8 @@ def beyond_the_box(learned: LearningSpec) -> str:
     """
     settings = settings_of(learned)
     box, radius = settings.babbling, settings.workspace.puck.radius
-    outlines = learned.held.held(hold_of(learned.binding)).outlines
+    holds = [learned.held.held(hold_of(one)).outlines for one in learned.bindings]
+    outlines = [part for held in holds for part in held]
     sides = max(max(-o.bounds[0], o.bounds[2]) for o in outlines) + radius
     far = max(o.bounds[3] for o in outlines) + radius
     wider = [
@@ -102,8 +113,9 @@ def beyond_the_box(learned: LearningSpec) -> str:
         )
         if needed > has
     ]
-    if far <= box.offset_y_min:
-        wider.append(f"offset_y_min={min(0.0, far):g}")
+    nearest = min(max(o.bounds[3] for o in held) + radius for held in holds)
+    if nearest <= box.offset_y_min:
+        wider.append(f"offset_y_min={min(0.0, nearest):g}")
     if not wider:
         return ""
     changes = " ".join(f"--set babbling.{one}" for one in wider)
@@ -141,7 +153,8 @@ def world_of(learned: LearningSpec, *, again: bool = False) -> World:
     require_robot(learned)
     require_known(settings)
     require_shape(learned.held)
-    hold_of(learned.binding)
+    for binding in learned.bindings:
+        hold_of(binding)
     if again:
         require_world_version(made)
     return registry.world(registry.present("worlds", made), settings)

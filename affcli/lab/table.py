@@ -11,6 +11,7 @@ from affcli.core.records import LearningRunInfo, StoredRow, StoredStep
 from affcli.core.row_filter import Column, Relation, RowFilter
 from affcli.core.specs import LIVES, LearningSpec, TrialSpec
 from affcli.store import Store
+from affcli.store.reading import behavior_call
 
 Made = TypeVar("Made")
 Write = Callable[[Sequence[Column], Iterable[tuple[Any, ...]]], Made]
@@ -112,10 +113,12 @@ def _with_region(
     run, x, y, angle = map(
         names.index, ("run", "start_wrist_to_object_x", "start_wrist_to_object_y", "wrist_angle")
     )
+    name, params = map(names.index, ("binding_behavior", "binding_params"))
     for row in rows:
         spec = specs.get(row[run])
         if spec is not None:  # and not of a run that was begun since
-            part = region_at(spec.held, spec.binding, row[angle], Point(row[x], row[y]))
+            binding = behavior_call(row[name], row[params])
+            part = region_at(spec.held, binding, row[angle], Point(row[x], row[y]))
             if region in (None, part):
                 yield (*row, part)
 

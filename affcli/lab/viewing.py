@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import islice
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from affcli.core.scene import Scene
 from affcli.core.tool import PUCK_COLOR, hold_of
 from affcli.errors import UsageError
 from affcli.lab.filming import FRAME_RATE, Reel
+from affcli.lab.learning_run import LearningRun
 from affcli.lab.photographs import SHOWN, eye_at
 from affcli.lab.run_parts import require_shape, settings_of, world_of
 from affcli.perception.camera_sensor import Eye, picture_of_pattern, table_pattern
@@ -23,6 +25,7 @@ from affcli.perception.segmentation import Segmentation, Segmenter
 from affcli.perception.view import side_by_side, video
 from affcli.simulation.sensing import eye_of
 from affcli.simulation.tasks.extension_of_reach import goal_regions, start_positions
+from affcli.store import Store
 
 VIEW = 3
 """First word of the key of the random stream that decides the noise in a picture made to be looked
@@ -85,6 +88,23 @@ def view_of_step(step: StepScene, *, after: bool) -> View:
     if step.blocked:
         what = f"{step.title}: blocked, {step.call} was not executed"
     return View(what, _seen(scene, _eye_of(step), VIEW, *step.key))
+
+
+def scene_of_behavior(store: Store, run: int, number: int) -> StepScene:
+    """Return one behavior of a learning run, with the tool held as it was.
+
+    Which of several grasps it was is a function of the run's spec, and written down only with its
+    rows: the run is done again as far as this behavior.
+
+    Raises:
+        UsageError: there is no such behavior.
+        BadInputError: this affcli cannot do the run again.
+    """
+    scene = store.learning.scene(run, number)
+    if not scene.learned.other_bindings:
+        return scene
+    record, _ = next(islice(LearningRun(scene.learned).steps(), number - 1, None))
+    return replace(scene, binding=record.binding or scene.binding)
 
 
 def film_of_step(step: StepScene, ending: str, *, frame_alone: bool) -> bytes:

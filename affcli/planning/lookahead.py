@@ -17,7 +17,13 @@ from affcli.core.goal import Goal
 from affcli.core.part import Part
 from affcli.core.setting import Setting
 from affcli.planning.neighbours import smoothed
-from affcli.planning.nested_query import JUDGING, usable_rows
+from affcli.planning.nested_query import (
+    JUDGING,
+    REGRASP,
+    REGRASPING,
+    regrasping,
+    usable_rows,
+)
 from affcli.planning.one_step import candidates
 from affcli.planning.row_model import CELL, LARGEST_CELL, Ends, Floats, RowModel, first_in_cells
 
@@ -86,6 +92,8 @@ class Lookahead:
         threshold, angle_degrees: as in `NestedQuery`.
         smoothing: how far neighbours lie whose movements are averaged with a row's own (in); 0 for
             none.
+        regrasp: taking the tool anew for the first row counts as so much re-positioning (in); later
+            moves are planned anew.
         certain: every row is taken to do what it did, whatever its counters say.
     """
 
@@ -95,6 +103,7 @@ class Lookahead:
     angle_degrees: float = REPLICATION_ANGLE_DEGREES
     smoothing: float = 0.0
     certain: bool = False
+    regrasp: float = REGRASP
 
     def choose(self, situation: Situation) -> Choice:
         """Return the first row of the best path, with the path and those that came close."""
@@ -114,7 +123,7 @@ class Lookahead:
         seen, goal = situation.seen.object_position, situation.goal
         x, y = search.first_ends(first)
         away = np.sqrt(goal.squared_distance(seen, x - seen.x, y - seen.y))
-        return candidates(situation, first, away, np.arange(len(first)))
+        return candidates(situation, first, away, np.arange(len(first)), self.regrasp)
 
     def _searched(self, situation: Situation) -> tuple["_Search", Reasons]:
         """Return the search from a situation, done, and how many rows could be used first."""
@@ -124,7 +133,9 @@ class Lookahead:
         steps = np.ones(len(table))
         if not self.certain:
             steps = table.times_used / np.maximum(table.times_successful, 1)
-        return _Search(situation, model, probable, steps, self.depth, self.beam), reasons
+        anew = regrasping(situation, np.arange(len(table)), self.regrasp)
+        search = _Search(situation, model, probable, steps, anew, self.depth, self.beam)
+        return search, reasons
 
 
 class _Search:
@@ -135,6 +146,8 @@ class _Search:
         model: what rows do.
         rows: those that may be used, by their positions in the table.
         steps: how often each row of the table is expected to be tried until it does so (n,).
+        anew: what taking the tool as each row of the table wants it adds to re-positioning (n,)
+            (in); None for nothing.
         depth, beam: as in `Lookahead`.
     """
 
@@ -144,6 +157,7 @@ class _Search:
         model: RowModel,
         rows: Rows,
         steps: Floats,
+        anew: Floats | None,
         depth: int,
         beam: int,
     ) -> None:
@@ -153,7 +167,8 @@ class _Search:
         self._steps = steps
         dx = table.offset_x - (seen.object_x - wrist.x)
         dy = table.offset_y - (seen.object_y - wrist.y)
-        self._carried = REPOSITIONING * np.hypot(dx, dy)
+        way = np.hypot(dx, dy)
+        self._carried = REPOSITIONING * (way if anew is None else way + anew)
         self._goal = _HalfPlanes(situation.goal)
         self._layers = self._searched(depth, beam)
         self._avoid_dead_ends()
@@ -306,6 +321,7 @@ PARTS = (
                 *(1, WIDEST),
             ),
             **JUDGING,
+            **REGRASPING,
             "smoothing": Setting(
                 *(0.0, "in"),
                 "How far neighbours lie whose movements are averaged with a row's own; 0: none.",

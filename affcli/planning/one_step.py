@@ -15,13 +15,14 @@ from affcli.core.choice import Candidate, Choice, Reason, Reasons, Situation
 from affcli.core.part import Part
 from affcli.core.setting import Setting
 from affcli.planning.neighbours import smoothed
-from affcli.planning.nested_query import JUDGING, usable_rows
+from affcli.planning.nested_query import JUDGING, REGRASP, regrasping, usable_rows
 from affcli.planning.row_model import Floats, RowModel
 
 
 @dataclass(frozen=True, slots=True)
 class OneStep:
-    """The least expected distance; a `Planner`. Of equally near rows the older.
+    """The least expected distance; a `Planner`. Of equally near rows the older, however far the
+    wrist goes and whatever grasp it wants.
 
     Args:
         threshold, angle_degrees: as in `NestedQuery`.
@@ -80,7 +81,7 @@ class Robust(OneStep):
 
 
 def candidates(
-    situation: Situation, rows: Rows, distance: Floats, order: Rows
+    situation: Situation, rows: Rows, distance: Floats, order: Rows, regrasp: float = REGRASP
 ) -> tuple[Candidate, ...]:
     """Return rows as candidates.
 
@@ -89,12 +90,16 @@ def candidates(
         rows: by their positions in the table (n,).
         distance: that each expects (n,) (in).
         order: which of them come first (m,).
+        regrasp: a new grasp counts as so much re-positioning (in).
     """
     table, seen, wrist = situation.table, situation.seen, situation.wrist
     dx = table.offset_x[rows] - (seen.object_x - wrist.x)
     dy = table.offset_y[rows] - (seen.object_y - wrist.y)
+    anew = regrasping(situation, rows, regrasp)
+    more = np.zeros(len(rows)) if anew is None else anew
     return tuple(
-        Candidate(int(rows[i]), float(distance[i]), math.hypot(dx[i], dy[i])) for i in order
+        Candidate(int(rows[i]), float(distance[i]), math.hypot(dx[i], dy[i]) + float(more[i]))
+        for i in order
     )
 
 

@@ -1,6 +1,6 @@
 """Behavioral babbling: how the affordance table is filled (§3.2, §6)."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +17,10 @@ from affcli.errors import BadInputError
 
 MOST_RESETS = 1_000
 """In a row, before one behavior; with sensible settings one is enough."""
+
+STINT = 20
+"""Behaviors after which a grasp is drawn anew where there are several. Choice: of 10, 20, 40, and
+only when the attractor is put back, as good as any (seeds 110 to 117, ``experiments/grasps``)."""
 
 
 @dataclass(slots=True)
@@ -35,6 +39,30 @@ class BabblingState:
     grasped: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class OtherGrasps:
+    """How else than by one binding behavior a robot may hold the tool while it babbles.
+
+    Args:
+        explorers: further binding behaviors, each with what explores while the tool is held so.
+        choices: the robot's own random stream.
+    """
+
+    explorers: Mapping[BehaviorCall, Explorer]
+    choices: np.random.Generator
+
+    def drawn(self, first: BehaviorCall) -> BehaviorCall:
+        """Return one of all binding behaviors, `first` among them, with equal chances."""
+        all_of_them = [first, *self.explorers]
+        return all_of_them[int(self.choices.integers(len(all_of_them)))]
+
+    def take(self, robot: Robot, first: BehaviorCall) -> None:
+        """Have the robot take the tool as drawn, unless it holds it so."""
+        drawn = self.drawn(first)
+        if drawn != robot.holding:
+            robot.execute(drawn, None)
+
+
 def babble(
     robot: Robot,
     sensor: Sensor,
@@ -43,6 +71,7 @@ def babble(
     explorer: Explorer,
     state: BabblingState,
     *,
+    others: OtherGrasps | None = None,
     elsewhere: bool = False,
 ) -> Iterator[BabblingRecord]:
     """Try behaviors at wrist positions that the explorer chooses, without end.
@@ -50,19 +79,31 @@ def babble(
     Each time: the experimenter puts the attractor back if it is out of the tool's reach; position
     wrist; a behavior; a row if the change detection function T is 1, with both counters 1 (§3.2).
 
+    §3.2: "picks binding and exploratory behaviors at random".
+
+    Choice: where there are several binding behaviors, one is drawn at the start, each time that the
+    attractor is put back, and before every `STINT`-th behavior. To draw one before each behavior
+    would take most of the robot's time. What is learned of one grasp says nothing of another, as
+    all places are seen from the wrist: each has an explorer of its own.
+
     Args:
         robot, sensor, experimenter: the world as the robot meets it.
-        binding: the binding behavior, executed once at the start.
+        binding: the binding behavior.
         explorer: chooses what to try, and is told what came of it.
         state: updated in place before each record is yielded.
+        others: how else the tool may be held; None for not at all.
         elsewhere: the experimenter puts the attractor elsewhere before each behavior.
     """
+    explorers = {binding: explorer, **(others.explorers if others else {})}
     if not state.grasped:
-        robot.execute(binding, None)
+        robot.execute(others.drawn(binding) if others else binding, None)
         state.grasped = True
+    held = binding
     while True:
         resets = redraws = 0
         placing: Execution | None = None
+        if others and state.step and state.step % STINT == 0:
+            others.take(robot, binding)
         lost = elsewhere or experimenter.attractor_out_of_reach()
         while placing is None:
             if resets >= MOST_RESETS:
@@ -72,10 +113,15 @@ def babble(
                     "offset_y_max, or lower sensor.position_noise"
                 )
             if lost:
+                # First the tool: the attractor is put where it can be touched with the tool so.
+                if others:
+                    others.take(robot, binding)
                 experimenter.put_attractor_back()
                 state.seen = None
                 resets += 1
             state.seen = state.seen or sensor.observe()
+            held = (robot.holding if others else None) or binding
+            explorer = explorers[held]
             placing, blocked = _place(robot, state.seen, explorer)
             redraws += blocked
             lost = placing is None
@@ -85,10 +131,10 @@ def babble(
         end = sensor.observe()
         state.step += 1
         state.seen = end
-        row = made_row(state.step, binding, execution, start, end)
-        record = BabblingRecord(
-            state.step, robot.clock, resets, redraws, placing, execution, start, end, row
-        )
+        row = made_row(state.step, held, execution, start, end)
+        done = (placing, execution, start, end, row)
+        told = held if others else None
+        record = BabblingRecord(state.step, robot.clock, resets, redraws, *done, told)
         explorer.tell(record)
         yield record
 

@@ -1,8 +1,10 @@
 """A testing trial as a film strip shows it: its steps, and which of them get a panel (§7)."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
+from affcli.core.behavior import BehaviorCall
 from affcli.core.geometry import Point, Pose
 from affcli.core.records import StoredStep
 from affcli.core.task import GoalRegion
@@ -21,6 +23,18 @@ LONGEST_BEHAVIOR = 32
 """Letters of a behavior's name and distance; those of affcli have 32 at most."""
 
 
+class Held(NamedTuple):
+    """A tool as it is held (hand frame).
+
+    Args:
+        parts: of the shape that was held.
+        missing: parts that the robot believed to hold as well.
+    """
+
+    parts: tuple[ToolPart, ...]
+    missing: tuple[ToolPart, ...]
+
+
 @dataclass(frozen=True, slots=True)
 class FilmedTrial:
     """A trial, as a film strip shows it.
@@ -30,6 +44,7 @@ class FilmedTrial:
         ending: how it ended, in a word or three; None when it has not.
         parts: of the shape that was held (hand frame); none when it is not known how it was held.
         missing: parts that the robot believed to hold as well (hand frame).
+        regrasped: the same, of each further binding behavior by which it was held in some step.
         goal: the goal region.
         wrist, puck: where they were at the start (in, rad, table frame).
         puck_radius: in.
@@ -48,6 +63,12 @@ class FilmedTrial:
     puck_radius: float
     table: TableSurface
     steps: tuple[StoredStep, ...]
+    regrasped: Mapping[BehaviorCall, Held] = field(default_factory=dict)
+
+    def held(self, step: StoredStep | None = None) -> Held:
+        """Return what was held in a step, and what it lacked; without a step, at the start."""
+        at_start = Held(self.parts, self.missing)
+        return at_start if step is None else self.regrasped.get(step.row.binding, at_start)
 
     @property
     def course(self) -> str:
@@ -136,11 +157,14 @@ def _tried(step: StoredStep) -> tuple[int, bool]:
 
 
 def take_title(take: Sequence[StoredStep]) -> str:
-    """Return what stands over a panel: ``2-7  slide arm left 2, row 519``."""
+    """Return what stands over a panel: ``2-7  slide arm left 2, row 519``; and the grasp, where the
+    tool was taken anew.
+    """
     first, last = take[0], take[-1]
     numbers = str(last.number) if first is last else f"{first.number}-{last.number}"
     plain = call_words(last.row.exploratory).encode("ascii", "backslashreplace").decode()
-    return f"{numbers}  {one_line(plain, LONGEST_BEHAVIOR)}, row {last.affordance_id}"
+    taken = f", {one_line(call_words(last.row.binding), 32)}" if first.regrasped else ""
+    return f"{numbers}  {one_line(plain, LONGEST_BEHAVIOR)}, row {last.affordance_id}{taken}"
 
 
 def take_verdict(take: Sequence[StoredStep]) -> str:

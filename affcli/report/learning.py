@@ -108,7 +108,7 @@ def run_json(run: LearningRunInfo) -> dict[str, Any]:
         "resets": run.resets,
         "robot_seconds": run.robot_seconds,
         "world": str(spec.world),
-        "binding": str(spec.binding),
+        "binding": " or ".join(map(str, spec.bindings)),
         "explorer": str(spec.explorer),
         "sensor": spec.sensor,
         "settings": settings_words(spec.settings),

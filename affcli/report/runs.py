@@ -13,7 +13,15 @@ from affcli.report.inventing import inventions_json, inventions_table
 from affcli.report.learning import groups_json, groups_table, run_json
 from affcli.report.sheet import Sheet
 from affcli.report.transferring import borrowed_json, borrowed_table
-from affcli.report.words import call_words, clock, fixed, many, run_words, seed_words
+from affcli.report.words import (
+    bindings_words,
+    call_words,
+    clock,
+    fixed,
+    many,
+    run_words,
+    seed_words,
+)
 
 SOME = 3
 """So many files of a log are named; `affcli sql "select * from log_file"` has all."""
@@ -90,7 +98,7 @@ def run_tables(
         "did": f"{clock(run.robot_seconds)}, {many(run.behaviors, 'behavior')}, "
         f"{many(run.rows, 'row')}, {many(run.resets, 'reset')}",
         "differs from the defaults": run_words(spec),
-        "binding": call_words(spec.binding),
+        "binding": bindings_words(spec),
         "behaviors": ", ".join(call_words(one.call) for one in spec.repertoire),
         "made with": ", ".join(f"{name} {one}" for name, one in run.versions.items()),
         "used by": use_words(belongings),

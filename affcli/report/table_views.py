@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from affcli.analysis.inventions import tried_in_passing
 from affcli.analysis.regions import parts_at
@@ -30,6 +30,7 @@ class TableView:
         missing: parts that the tool has lost.
         puck_radius: of the attractor (in).
         rows: the rows, each with its status.
+        regrasped: parts and missing parts of each further binding behavior by which rows were made.
     """
 
     heading: str
@@ -37,6 +38,9 @@ class TableView:
     missing: Sequence[ToolPart]
     puck_radius: float
     rows: Sequence[tuple[Affordance, RowStatus]]
+    regrasped: Mapping[BehaviorCall, tuple[Sequence[ToolPart], Sequence[ToolPart]]] = field(
+        default_factory=dict
+    )
 
     def count(self, status: RowStatus) -> int:
         """Return how many of its rows have this status."""
@@ -205,7 +209,8 @@ def _left_out(runs: Sequence[LearningRunInfo], *tools: Tool) -> tuple[str, ...]:
     """Return the lines that say what is not drawn, and why."""
     if all(run.spec.logged for run in runs):
         return ("no tool is drawn, for a log does not say what it looked like",)
-    return unknown_shapes(tools), _unknown_holds(run.spec.binding for run in runs)
+    holds = _unknown_holds(one for run in runs for one in run.spec.bindings)
+    return unknown_shapes(tools), holds
 
 
 def _unknown_holds(bindings: Iterable[BehaviorCall]) -> str:
@@ -230,11 +235,16 @@ def _view(
     passing = tried_in_passing(run.spec.repertoire, rows)
     told = zip(rows, statuses, strict=True)
     shown = [(row, its) for row, its in told if row.exploratory not in passing]
-    parts = parts_at(tool, binding, 0.0)
-    kept = {part.name for part in parts}
-    before = () if was is None or not tool.parts else parts_at(was, binding, 0.0)
-    missing = [part for part in before if part.name not in kept]
-    return TableView(heading, parts, missing, puck_radius, shown)
+
+    def held(binding: BehaviorCall) -> tuple[Sequence[ToolPart], Sequence[ToolPart]]:
+        parts = parts_at(tool, binding, 0.0)
+        kept = {part.name for part in parts}
+        before = () if was is None or not tool.parts else parts_at(was, binding, 0.0)
+        return parts, [part for part in before if part.name not in kept]
+
+    others = dict.fromkeys(row.binding for row, _ in shown if row.binding != binding)
+    regrasped = {one: held(one) for one in others}
+    return TableView(heading, *held(binding), puck_radius, shown, regrasped)
 
 
 def _heading(run: LearningRunInfo) -> str:

@@ -157,6 +157,11 @@ def parts_words(spec: LearningSpec | SessionSpec) -> str:
     return ", ".join(f"{kind} {one_line(text)}" for kind, text in parts.items())
 
 
+def bindings_words(spec: LearningSpec | SessionSpec) -> str:
+    """Return how the tool may be held: ``grasp 1 or grasp 6``, the first as trials begin."""
+    return " or ".join(map(call_words, spec.bindings))
+
+
 def seed_words(spec: LearningSpec | SessionSpec) -> str:
     """Return the seed of a run; - for what was imported from a log."""
     return NOT_SAID if spec.logged else str(spec.seed)

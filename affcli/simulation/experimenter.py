@@ -3,6 +3,8 @@ wanted.
 """
 
 import math
+from collections.abc import Sequence
+from itertools import chain
 
 import numpy as np
 
@@ -12,7 +14,7 @@ from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.geometry import Point, Pose
 from affcli.core.motion import turned_by
 from affcli.core.task import GoalRegion
-from affcli.core.tool import Tool
+from affcli.core.tool import Hold, Tool
 from affcli.errors import BadInputError
 from affcli.simulation.arm import Reach, reach_at
 from affcli.simulation.reach_of_tool import touchable
@@ -39,6 +41,7 @@ class SimulatedExperimenter:
         self._reach = reach_at(arm, arm.flange_height)
         self._lifted = reach_at(arm, arm.flange_height + arm.lift_height)
         self._repertoire = repertoire
+        self._holds: tuple[Hold, ...] = ()
 
     def lay_out_learning(self, tool: Tool) -> None:
         """Begin a learning run: tool and attractor at random positions, no goal (§6)."""
@@ -47,8 +50,17 @@ class SimulatedExperimenter:
         self._table.wrist = self._random_wrist()
         self.put_attractor_back()
 
-    def lay_out_trial(self, tool: Tool, start: Point, goal: GoalRegion) -> None:
-        """Begin a testing trial: tool at the table's centre, attractor at a start (§7.1)."""
+    def lay_out_trial(
+        self, tool: Tool, start: Point, goal: GoalRegion, holds: Sequence[Hold] = ()
+    ) -> None:
+        """Begin a testing trial: tool at the table's centre, attractor at a start (§7.1).
+
+        Args:
+            tool, start, goal: what is laid out.
+            holds: how else than now the robot may take the tool: what it can touch so is within
+                its reach, too.
+        """
+        self._holds = tuple(holds)
         self._table.put_down(tool)
         self._table.goal = goal
         self._table.wrist = self._table.home
@@ -64,7 +76,8 @@ class SimulatedExperimenter:
         self._table.wrist = self._table.home
 
     def attractor_out_of_reach(self) -> bool:
-        """Tell whether no slide from any wrist position can touch the attractor, the tool straight.
+        """Tell whether no slide from any wrist position can touch the attractor, the tool straight
+        in the hand or as else the robot may take it in this trial.
 
         A touch counts when it can move the attractor by more than T detects: a tool that can only
         graze it shows the robot nothing. Nothing reaches an attractor pushed over the table's edge.
@@ -75,8 +88,10 @@ class SimulatedExperimenter:
         """
         table = self._table
         point, depth = table.attractor.point, table.workspace.puck.radius - MOVEMENT_THRESHOLD
-        within = touchable(table.tool.outlines, self._reach, point, depth)
-        return not (self._is_on_table(point) and within)
+        if not self._is_on_table(point):
+            return True
+        tools = chain([table.tool], map(table.tool_held, self._holds))
+        return not any(touchable(one.outlines, self._reach, point, depth) for one in tools)
 
     def put_attractor_back(self) -> None:
         """Put the attractor at a random place of the table within the tool's reach and off it.

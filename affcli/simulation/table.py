@@ -48,7 +48,11 @@ class Table:
 
     def take(self, hold: Hold) -> None:
         """Take the tool as a hold says: its parts move in the hand frame, the wrist stays."""
-        self._held = self._there(self._whole).held(hold)
+        self._held = self.tool_held(hold)
+
+    def tool_held(self, hold: Hold) -> Tool:
+        """Return the tool on the table in the hand frame of a hold; LookupError without one."""
+        return self._there(self._whole).held(hold)
 
     @property
     def tool(self) -> Tool:

@@ -184,7 +184,9 @@ class TableWorld:
         key = (TRIAL, spec.seed, spec.robot, *names, *task)
         setting = self._setting(learned, spec.sensor, spec.seed, *key)
         held = spec.held.painted(learned.held.color)
-        setting.experimenter.lay_out_trial(held, spec.task.start, spec.task.goal)
+        # The first is how the robot takes the tool, before anyone looks.
+        holds = [hold_of(one) for one in learned.other_bindings and learned.bindings]
+        setting.experimenter.lay_out_trial(held, spec.task.start, spec.task.goal, holds)
         return setting
 
     def verification(

@@ -288,7 +288,7 @@ class Learning:
             return tuple(map(reading.logged_try, found))
 
     def scene(self, run_id: int, number: int) -> StepScene:
-        """Return one behavior of a learning run.
+        """Return one behavior of a learning run, held by the first of its grasps.
 
         Raises:
             UsageError: no such run, or no such behavior in it, or its world does not tell where the
@@ -460,11 +460,15 @@ def _the_run(spec: LearningSpec, session_id: int | None) -> sa.Select[Any]:
 
 def _changed(stored: LearningSpec, wanted: LearningSpec) -> tuple[ChangedPart, ...]:
     """Return in which settings, and in what else, two specs differ."""
+
+    def bindings_of(spec: LearningSpec) -> str:
+        return " or ".join(map(str, spec.bindings))
+
     old, new = json.loads(stored.settings), json.loads(wanted.settings)
     parts = [(name, old.get(name), new.get(name)) for name in sorted(old.keys() | new.keys())]
     parts += [
         ("world", str(stored.world), str(wanted.world)),
-        ("binding", str(stored.binding), str(wanted.binding)),
+        ("binding", bindings_of(stored), bindings_of(wanted)),
         ("tool", stored.held.key[:8], wanted.held.key[:8]),
     ]
     return tuple(ChangedPart(*part) for part in parts if part[1] != part[2])

@@ -39,6 +39,7 @@ from affcli.core.transfer import Transfer
 from affcli.core.trial import Outcome
 from affcli.errors import BadInputError, DatabaseError
 from affcli.store.columns import END_OBSERVATION, START_OBSERVATION
+from affcli.store.rows import to_json
 
 Columns = Mapping[str, Any]
 """A row by the names of its columns."""
@@ -207,6 +208,16 @@ def _at_most(value: float | None, most: float) -> Any:
     return value
 
 
+def _bindings(name: str, params: str) -> dict[str, Any]:
+    """Return how the tool may be held: by the parameters of one binding, or a list of several."""
+    value = json_value(params)
+    if not isinstance(value, list):
+        return {"binding": behavior_call(name, params)}
+    # In the order in which each was written, by which it is known.
+    first, *others = (behavior_call(name, to_json(one)) for one in value)
+    return {"binding": first, "other_bindings": tuple(others)}
+
+
 def _parts(row: Columns) -> dict[str, Any]:
     """Return the parts that the specs of sessions and learning runs share."""
     dict(json_value(row["settings"]))  # a mapping, whatever its keys
@@ -215,7 +226,7 @@ def _parts(row: Columns) -> dict[str, Any]:
         "settings": row["settings"],
         "world": component(row["world"]),
         "repertoire": repertoire(row["repertoire"]),
-        "binding": behavior_call(row["binding_behavior"], row["binding_params"]),
+        **_bindings(row["binding_behavior"], row["binding_params"]),
         "explorer": component(row["explorer"]),
         "sensor": cast(SensorKind, row["sensor"]),
     }

@@ -1,7 +1,7 @@
 """From records to rows. Needs no SQLAlchemy: a worker process turns what a robot did into rows."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -32,6 +32,12 @@ def params_to_json(call: BehaviorCall) -> str:
     return json.dumps(dict(call.params), allow_nan=False)
 
 
+def bindings_to_json(bindings: Sequence[BehaviorCall]) -> str:
+    """Return the parameters of a run's bindings, which all have one name: of several as a list."""
+    texts = [params_to_json(one) for one in bindings]
+    return texts[0] if len(texts) == 1 else f"[{', '.join(texts)}]"
+
+
 def tool_row(tool: Tool) -> Row:
     """Return the row of a tool whose shape is known."""
     return (tool.key, tool.name, canonical_json(tool.canonical()))
@@ -52,7 +58,7 @@ def _parts_of(
         "world": str(spec.world),
         "repertoire": to_json(repertoire_json(spec.repertoire)),
         "binding_behavior": spec.binding.name,
-        "binding_params": params_to_json(spec.binding),
+        "binding_params": bindings_to_json(spec.bindings),
         "explorer": str(spec.explorer),
         "sensor": spec.sensor,
         "settings": spec.settings,

@@ -84,6 +84,21 @@ def test_a_setting_may_be_written_as_toml_allows(read: Any, said: str) -> None:
     assert settings_of(only.parts).sensor.position_noise == 0.25
 
 
+def test_a_condition_has_one_grasp_or_several(read: Any) -> None:
+    """Of which one in a list is the one; and each condition of a sweep may have its own."""
+    grasps = "'grasp', 'grasp:grasp_point=7'"
+    one, listed, both = read(
+        f"{HEAD}[sweep]\nbinding = ['grasp', ['grasp:angle=90'], [{grasps}]]\n"
+    ).conditions
+    assert [list(map(str, c.parts.bindings)) for c in (one, listed, both)] == [
+        *(["grasp 1"], ["grasp 1 90"]),
+        ["grasp 1", "grasp 7"],
+    ]
+    assert both.name == "binding=grasp+grasp:grasp_point=7"
+    what = read(f"{HEAD}[base]\nbinding = [{grasps}]\n")
+    assert experiment_of(what.definition, "as stored") == what
+
+
 def test_sizes_need_fit_only_together(read: Any) -> None:
     sizes = "settings.tools.part_width = 6\nsettings.tools.hook_length = 8\n"
     more = "settings.tools.bar_reach = 9\n"
@@ -163,6 +178,20 @@ def test_as_many_conditions_as_there_may_be_can_be_stored(read: Any, store: Stor
             "base.planner: no planner 'x'; did you mean lookahead or nested-query",
         ),
         (f"{HEAD}[base]\nplanner = 3\n", "base.planner: 3 must be a name"),
+        (f"{HEAD}[base]\nbinding = []\n", "base.binding: [] must be a name, or several in a list"),
+        (
+            f"{HEAD}[base]\nbinding = ['grasp', 3]\n",
+            "base.binding: ['grasp', 3] must be a name, or",
+        ),
+        (f"{HEAD}[base]\nbinding = ['grasp', 'grasp']\n", "base.binding: grasp comes twice"),
+        (
+            f"{HEAD}{TWO}binding = ['grasp', 'grasp:grasp_point=16']\n",
+            "condition[1]: grasp: grasp_point = 16 lies beyond the end of the handle, at 15.6",
+        ),
+        (
+            f"{HEAD}{TWO}explorer = 'inventing'\nbinding = ['grasp', 'grasp:angle=90']\n",
+            "condition[1]: binding: robots that explore by inventing take one grasp; give one; in",
+        ),
         (f"{HEAD}[base]\ntools = []\n", "base.tools: [] must be names in a list"),
         (f"{HEAD}[base]\ntools = ['stick', 3]\n", "base.tools: ['stick', 3] must be names in a"),
         (f"{HEAD}[base]\ntools = ['hoe']\n", "base.tools: no tool 'hoe'; did you mean"),

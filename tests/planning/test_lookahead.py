@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from affcli import registry
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import AffordanceTable
+from affcli.core.behavior import GRASP, BehaviorCall
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.choice import Choice, Reason, Situation
 from affcli.core.geometry import Point, Pose
@@ -215,3 +216,13 @@ def test_a_plan_is_told_as_json_and_read_again() -> None:
 def test_a_search_that_cannot_be_done_names_its_limit(text: str) -> None:
     with pytest.raises(BadInputError, match=r"must lie in \[1, (8|400)\]"):
         registry.component("planners", text)
+
+
+def test_of_equally_good_paths_the_one_that_needs_no_new_grasp_is_taken() -> None:
+    """Unless the other spares the wrist more than the grasp costs."""
+    rows = [row(1, (5.0, 5.0)), row(2, (5.0, 5.0))]
+    other = replace(rows[0], binding=BehaviorCall.of(GRASP, {"grasp_point": 9.0}))
+    here = standing([other, rows[1]], goal_at(5.0, 5.0, 1.0))
+    assert Lookahead().choose(replace(here, holding=rows[1].binding)).position == 1
+    assert Lookahead().choose(replace(here, holding=other.binding)).position == 0
+    assert Lookahead(regrasp=0.0).choose(replace(here, holding=rows[1].binding)).position == 0

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import COLOR_TOLERANCE, AffordanceTable, Rows
-from affcli.core.choice import Choice
+from affcli.core.behavior import GRASP, BehaviorCall
+from affcli.core.choice import Choice, Situation
 from affcli.core.geometry import Point, Pose
 from affcli.core.observation import Observation
 from affcli.core.task import GoalRegion
@@ -357,3 +358,47 @@ def test_a_blank_table_gives_no_row() -> None:
     choice = choose_row(AffordanceTable(), observation(), goal_at(0.0, 0.0), robot_at(Point(0, 0)))
     assert choice.position is None
     assert rows_left(choice) == (0, 0, 0, 0)
+
+
+HELD = affordance().binding
+OTHER = BehaviorCall.of(GRASP, {"grasp_point": 9.0})
+
+
+def planned(rows: list[Affordance], holding: BehaviorCall | None, **params: float) -> Choice:
+    """Return what search 4 chooses of all rows, with the tool held in some way."""
+    here = replace(standing_with(rows), holding=holding)
+    return NestedQuery(1.0, **params).choose(here)
+
+
+def standing_with(rows: list[Affordance]) -> Situation:
+    """Return a robot at the middle of the rows' places, with no tool in its hand."""
+    robot = robot_at(Point(0.0, 0.0))
+    return situation(table_of(*rows), seen_at(Point(0.0, 0.0)), goal_at(0.0, 0.0), robot)
+
+
+@given(rows_drawn(), st.sampled_from([0.0, 10.0, 1000.0]))
+def test_with_one_grasp_a_new_one_costs_nothing(rows: list[Affordance], cost: float) -> None:
+    """Nor where it is not known how the tool is held."""
+    expected = planned(rows, None)
+    assert planned(rows, HELD, regrasp=cost) == expected
+    other = [replace(row, binding=OTHER) for row in rows]
+    assert planned(other, None, regrasp=cost).position == expected.position
+
+
+@given(rows_drawn(), st.data())
+def test_a_row_of_another_grasp_is_as_much_farther_away_as_the_grasp_costs(
+    rows: list[Affordance], data: st.DataObject
+) -> None:
+    """Search 4 takes the row with the least way of the wrist and cost of a grasp together."""
+    grasps = [data.draw(st.sampled_from([HELD, OTHER])) for _ in rows]
+    mixed = [replace(row, binding=one) for row, one in zip(rows, grasps, strict=True)]
+    here = standing_with(mixed)
+    found = NestedQuery(1.0, regrasp=10.0).candidates(replace(here, holding=HELD))
+    ways = {one.position: one.repositioning for one in NestedQuery(1.0).candidates(here)}
+    for one in found:
+        more = 10.0 if here.table.row(one.position).binding == OTHER else 0.0
+        assert one.repositioning == pytest.approx(ways[one.position] + more)
+    chosen = planned(mixed, HELD, regrasp=10.0).position
+    assert chosen == (found[0].position if found else None)
+    if found:
+        assert found[0].repositioning == min(one.repositioning for one in found)

@@ -1,8 +1,9 @@
 """Behavioral babbling against a table without physics (§3.2, §6)."""
 
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import replace
-from itertools import count, islice, repeat
+from itertools import count, cycle, islice, pairwise, repeat
 
 import numpy as np
 import pytest
@@ -12,11 +13,11 @@ from hypothesis import strategies as st
 from affcli.behaviors.moving import paper_repertoire
 from affcli.core.affordance import Affordance
 from affcli.core.babbling_box import BabblingSettings
-from affcli.core.behavior import GRASP, POSITION_WRIST, ExecutionStatus
+from affcli.core.behavior import GRASP, POSITION_WRIST, BehaviorCall, ExecutionStatus
 from affcli.core.geometry import Point
 from affcli.core.trial import BabblingRecord
 from affcli.exploration.random_babbling import RandomBabbling
-from affcli.procedures.babbling import BabblingState, babble
+from affcli.procedures.babbling import STINT, BabblingState, OtherGrasps, babble
 from tests.factories import BINDING, EIGHTH, EXTEND_5, observation, places
 from tests.fakes import (
     FakeExperimenter,
@@ -293,3 +294,58 @@ def test_an_explorer_is_asked_again_when_the_attractor_was_lost() -> None:
     back = Point(3.0, 22.0)
     robot = FakeRobot(FakeTable(attractor=Point(0.0, 60.0)))
     assert heard(robot, 1, [back])[0] == ("places", back)
+
+
+HIGHER = BehaviorCall.of(GRASP, {"grasp_point": 5.0})
+TURNED = BehaviorCall.of(GRASP, {"grasp_point": 1.0, "angle": 180.0})
+
+
+@given(st.integers(0, 999))
+def test_the_grasp_is_drawn_at_the_start_for_each_stint_and_when_the_attractor_is_put_back(
+    seed: int,
+) -> None:
+    """§3.2: "picks binding and exploratory behaviors at random". In between the tool stays in the
+    hand; it is taken before the attractor is put back, and what is tried is asked of the explorer
+    of its grasp alone."""
+    table = FakeTable()
+    robot = FakeRobot(table, effect=scripted(cycle([*[(0.0, 1.0)] * 7, (0.0, 40.0)])))
+    hand = FakeExperimenter(table, lost=lambda at: at.y > 50.0, places=repeat(Point(0.0, 24.0)))
+    bindings = (BINDING, HIGHER, TURNED)
+    explorers = {one: FakeExplorer([(0.0, 8.0)], EXTEND_5) for one in bindings}
+    others = {one: explorers[one] for one in (HIGHER, TURNED)}
+    drawing = OtherGrasps(others, np.random.default_rng(seed))
+    babbled = babble(
+        *(robot, FakeSensor(table), hand, BINDING, explorers[BINDING], BabblingState()),
+        others=drawing,
+    )
+    records = list(islice(babbled, 5 * STINT))
+    held, before = BINDING, BINDING
+    for record in records:
+        held = record.binding or held
+        assert record.affordance is not None
+        assert record.affordance.binding == held
+        assert record.resets > 0 or record.step % STINT == 1 or held == before
+        before = held
+    assert {record.binding for record in records} <= set(bindings)
+    assert len({record.binding for record in records}) > 1
+    for one, of in explorers.items():
+        told = [what for word, what in of.heard if word == "tell"]
+        assert told == [record.step for record in records if record.binding == one]
+    taken = [call for call, _ in robot.executed if call.name == GRASP]
+    assert all(one != other for one, other in pairwise(taken))
+
+
+def test_each_of_several_grasps_is_drawn_as_often() -> None:
+    drawing = OtherGrasps(
+        {one: FakeExplorer([], EXTEND_5) for one in (HIGHER, TURNED)}, np.random.default_rng(1)
+    )
+    drawn = Counter(drawing.drawn(BINDING) for _ in range(3000))
+    assert drawn.keys() == {BINDING, HIGHER, TURNED}
+    assert all(850 < count < 1150 for count in drawn.values())
+
+
+def test_one_grasp_is_taken_once_and_nothing_is_drawn_for_it() -> None:
+    rng = np.random.default_rng(3)
+    records = babbling(20)
+    assert {record.binding for record in records} == {None}
+    assert OtherGrasps({}, rng).drawn(BINDING) == BINDING

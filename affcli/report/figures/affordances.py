@@ -40,10 +40,13 @@ MOST_BESIDE = 5
 
 
 class _Panel(NamedTuple):
-    """What the rows of one panel share: their behavior, and the wrist's angle before it (deg)."""
+    """What the rows of one panel share: their behavior, the wrist's angle before it (deg), and the
+    binding behavior by which the tool was held, where it is not the view's own.
+    """
 
     call: BehaviorCall
     turn: int
+    held: BehaviorCall | None = None
 
 
 def affordances_figure(
@@ -64,7 +67,7 @@ def affordances_figure(
         key: what each status is called below the panels, where more than one occurs.
         width: in; what suits it if not given.
     """
-    groups = _groups(calls, [_panel_of(row) for view in views for row, _ in view.rows])
+    groups = _groups(calls, [_panel_of(row, view) for view in views for row, _ in view.rows])
     beside = 1 if width is not None and width < len(views) * 2 * ENOUGH else len(views)
     most = int((width or TWO_COLUMNS) / ENOUGH) // beside
     if beside < len(views) or sum(map(len, groups)) > most * MOST_ROWS:
@@ -91,9 +94,10 @@ def affordances_figure(
     return figure
 
 
-def _panel_of(row: Affordance) -> _Panel:
+def _panel_of(row: Affordance, view: TableView) -> _Panel:
     """Return the panel that a row is drawn in."""
-    return _Panel(row.exploratory, row.wrist_degrees)
+    held = row.binding if row.binding in view.regrasped else None
+    return _Panel(row.exploratory, row.wrist_degrees, held)
 
 
 def _groups(calls: Sequence[BehaviorCall], of_rows: Sequence[_Panel]) -> list[list[_Panel]]:
@@ -101,12 +105,13 @@ def _groups(calls: Sequence[BehaviorCall], of_rows: Sequence[_Panel]) -> list[li
 
     A call without rows has a panel too, with the tool as it is grasped.
     """
-    turns: dict[BehaviorCall, set[int]] = {call: set() for call in calls}
-    for call, turn in of_rows:
-        turns.setdefault(call, set()).add(turn)
+    panels: dict[BehaviorCall, set[_Panel]] = {call: set() for call in calls}
+    for panel in of_rows:
+        panels.setdefault(panel.call, set()).add(panel)
     groups: dict[str, list[_Panel]] = {}
-    for call, its in turns.items():
-        groups.setdefault(call.name, []).extend(_Panel(call, turn) for turn in sorted(its or {0}))
+    for call, its in panels.items():
+        in_order = sorted(its or {_Panel(call, 0)}, key=lambda one: (str(one.held or ""), one.turn))
+        groups.setdefault(call.name, []).extend(in_order)
     return in_papers_order(groups.values(), lambda panels: panels[0].call.name)
 
 
@@ -152,14 +157,18 @@ def _draw_scale(axes: Axes, view: TableView) -> None:
 def _draw_panel(axes: Axes, view: TableView, panel: _Panel, room: float) -> None:
     """Draw the rows of one panel over the tool, which turns with the wrist."""
     wrist = Pose(0.0, 0.0, math.radians(panel.turn))
-    draw_parts(axes, view.parts, wrist)
-    draw_parts(axes, view.missing, wrist, missing=True)
+    parts, missing = view.parts, view.missing
+    if panel.held is not None:
+        parts, missing = view.regrasped.get(panel.held, ((), ()))
+    draw_parts(axes, parts, wrist)
+    draw_parts(axes, missing, wrist, missing=True)
     draw_grasp(axes)
-    its_rows = [(row, status) for row, status in view.rows if _panel_of(row) == panel]
+    its_rows = [(row, status) for row, status in view.rows if _panel_of(row, view) == panel]
     for status in RowStatus:
         arrows = [_arrow(row) for row, its in its_rows if its is status]
         draw_arrows(axes, arrows, LOOKS[status], HEAD)
     turned = [f"wrist at {panel.turn} deg"] if panel.turn else []
+    turned += [call_words(panel.held)] if panel.held else []
     counts = _counts([status for _, status in its_rows])
     lines = "\n".join([call_words(panel.call), *turned, counts])
     axes.set_title(wrapped(lines, TITLES, room), fontsize=TITLES)

@@ -50,7 +50,7 @@ def plan_figure(trial: FilmedTrial, step: StoredStep, width: float | None = None
         (axes,) = map_panels(figure, 1, 1)
         draw_table(axes, trial.table, fill="white", edge=FAINT)
         draw_goal(axes, trial.goal, goal_label(trial.goal.name))
-        draw_parts(axes, trial.parts, step.wrist_start)
+        draw_parts(axes, trial.held(step).parts, step.wrist_start)
         draw_grasp(axes, step.wrist_start)
         draw_puck(axes, step.seen_start, trial.puck_radius)
         for other in plans[1:]:

@@ -32,7 +32,7 @@ from affcli.report.figures.canvas import (
 from affcli.report.figures.key import draw_key
 from affcli.report.figures.maps import fit_maps, map_panels
 from affcli.report.figures.things import draw_goal, draw_grasp, draw_parts, draw_puck, draw_table
-from affcli.report.film import COLUMNS, FilmedTrial, Shown, take_title, take_verdict
+from affcli.report.film import COLUMNS, FilmedTrial, Held, Shown, take_title, take_verdict
 
 BEFORE, AFTER = "#b4b4b4", "#6e6e6e"
 """Outlines of the tool before and after a behavior."""
@@ -91,17 +91,17 @@ def _draw_table(axes: Axes, trial: FilmedTrial) -> None:
 
 def _draw_start(axes: Axes, trial: FilmedTrial) -> None:
     """Draw the table as the trial begins."""
-    _draw_tool(axes, trial, trial.wrist)
+    _draw_tool(axes, trial.held(), trial.wrist)
     draw_puck(axes, trial.puck, trial.puck_radius)
     axes.set_title("start", loc="left", fontsize=SMALL, fontweight="bold")
 
 
-def _draw_tool(axes: Axes, trial: FilmedTrial, wrist: Pose) -> None:
+def _draw_tool(axes: Axes, held: Held, wrist: Pose) -> None:
     """Draw the tool as it was held, filled, and what it lacks as dashed outlines."""
-    draw_parts(axes, trial.missing, wrist, edge=AFTER, missing=True)
+    draw_parts(axes, held.missing, wrist, edge=AFTER, missing=True)
     # Outlines first, then the parts over them: no seams where two parts meet.
-    draw_parts(axes, trial.parts, wrist, edge=AFTER)
-    draw_parts(axes, trial.parts, wrist, edge="none")
+    draw_parts(axes, held.parts, wrist, edge=AFTER)
+    draw_parts(axes, held.parts, wrist, edge="none")
     draw_grasp(axes, wrist)
 
 
@@ -110,12 +110,13 @@ def _draw_step(axes: Axes, trial: FilmedTrial, step: StoredStep) -> None:
     outline = AFTER if step.blocked else BEFORE
     # A tool that could not be lowered is held over the table: nothing of it is filled.
     wrist = step.wrist_end if step.blocked else step.wrist_start
-    draw_parts(axes, trial.missing, wrist, edge=outline, missing=True)
-    draw_parts(axes, trial.parts, wrist, edge=outline, fill="none")
+    held = trial.held(step)
+    draw_parts(axes, held.missing, wrist, edge=outline, missing=True)
+    draw_parts(axes, held.parts, wrist, edge=outline, fill="none")
     if step.blocked:
         draw_grasp(axes, wrist)
     else:
-        _draw_tool(axes, trial, step.wrist_end)
+        _draw_tool(axes, held, step.wrist_end)
     if step.moved:
         draw_puck(axes, step.attractor_start, trial.puck_radius, before=True, color=INK)
     draw_puck(axes, step.attractor_end, trial.puck_radius)
