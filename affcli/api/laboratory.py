@@ -4,6 +4,7 @@ import os
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from numbers import Real
 from pathlib import Path
 
@@ -80,6 +81,7 @@ class Laboratory:
         sensor: str | None = None,
         world: str | None = None,
         note: str | None = None,
+        transfer_from: str | None = None,
     ) -> LearningRunInfo:
         """Let a robot babble with a tool and fill its affordance table.
 
@@ -95,6 +97,7 @@ class Laboratory:
                 one, or several.
             sensor: ``noisy``, ``exact`` or ``camera``.
             note: what you want to remember of it.
+            transfer_from: runs from which it borrows first, as ``"1,2"``; then minutes may be 0.
 
         Raises:
             UsageError, BadInputError: something of this cannot be; the message says what can.
@@ -103,7 +106,9 @@ class Laboratory:
             raise UsageError("give one of hours, minutes and behaviors")
         kind = None if sensor is None else str(registry.component("sensors", sensor))
         said = with_sensor(settings_by_name(settings or {}, "settings"), kind)
-        if minutes is not None:
+        if minutes == 0.0 and transfer_from is not None:
+            hours = 0.0
+        elif minutes is not None:
             hours = _within("minutes", minutes, 60.0 * LONGEST_HOURS) / 60.0
         elif hours is not None or behaviors is None:
             hours = _within("hours", 1.0 if hours is None else hours, LONGEST_HOURS)
@@ -120,6 +125,9 @@ class Laboratory:
         )
         spec = parts.spec(tool, _whole("seed", seed, 0, LARGEST_SEED), 0, hours, behaviors)
         with self._opened(create=True, write=True) as store:
+            if transfer_from is not None:
+                transfer = lab.transferring.transfer_from(store, transfer_from)
+                spec = replace(spec, transfer=transfer)
             learned = lab.learning.learn(store, spec, now).info
             if note is not None:
                 store.runs.note(learned.id, note)

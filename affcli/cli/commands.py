@@ -112,7 +112,7 @@ FIGURE = Group(
             "transfer",
             "figure_learned:transfer",
             "Draw what a run borrowed from others, and what it became.",
-            "affcli figure transfer --run 3 --out transfer.pdf",
+            "affcli figure transfer --run RUN --out transfer.pdf",
         ),
         Command(
             "workspace",

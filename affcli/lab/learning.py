@@ -129,8 +129,9 @@ def _begun_with_rows(
     from affcli.lab.transferring import borrowed_from_store
 
     mask, lent = borrowed_from_store(store, spec, tell)
-    info = store.learning.begin(spec, versions, now(), borrowing=lent)
-    store.transfers.save_mask(info.id, mask)
+    with store.turn():
+        info = store.learning.begin(spec, versions, now(), borrowing=lent)
+        store.transfers.save_mask(info.id, mask)
     return info
 
 

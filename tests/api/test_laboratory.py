@@ -209,3 +209,15 @@ def test_a_robot_invents_and_another_run_uses_that(tmp_path: Path) -> None:
     assert [str(one.call) for one in used.spec.repertoire][8:] == kept
     with pytest.raises(affcli.BadInputError, match="too few to invent"):
         lab.invent("stick", minutes=1)
+
+
+def test_a_robot_carries_over_what_it_learned_with_another_tool(tmp_path: Path) -> None:
+    lab = affcli.Laboratory(tmp_path / "my.db")
+    lab.learn("l-hook", minutes=5)
+    run = lab.learn("mirrored-hook", minutes=0, transfer_from="1:each=20")
+    assert (run.behaviors, run.status) == (0, "done")
+    assert 0 < run.rows <= 150
+    with pytest.raises(affcli.UsageError, match="no learning run 7"):
+        lab.learn("mirrored-hook", minutes=0, transfer_from="7")
+    with pytest.raises(affcli.BadInputError, match="minutes"):
+        lab.learn("mirrored-hook", minutes=0)

@@ -86,7 +86,7 @@ WRITING = {
     "learn": Writing(LEARN),
     "learn, through a camera": Writing("learn --tool stick --behaviors 4 --sensor camera"),
     "learn, carrying over": Writing(
-        "learn --tool fork --behaviors 4 --transfer-from 1,2:shifts=0", (LEARN,)
+        "learn --tool fork --behaviors 4 --transfer-from 1,2 --set trial.max_steps=4", (LEARN,)
     ),
     "invent": Writing("invent --tool stick --minutes 6"),
     "solve": Writing("solve --goal 3", (LEARN,), anew=True),
