@@ -67,8 +67,15 @@ def borrowed_by(spec: LearningSpec, lenders: Sequence[Lender], mask: Mask) -> tu
 
 
 def lender_of(spec: LearningSpec, rows: Sequence[Affordance], mask: Mask) -> Lender:
-    """Return a run as a lender: of the rows that its own robot made, as they were learned."""
-    own = [replace(row, times_used=1, times_successful=1) for row in rows if not row.is_borrowed]
+    """Return a run as a lender: of the rows that its own robot made, as they were learned.
+
+    Of several grasps it lends what it did with the first: that is the one its camera saw.
+    """
+    own = [
+        replace(row, times_used=1, times_successful=1)
+        for row in rows
+        if not row.is_borrowed and row.binding == spec.binding
+    ]
     return Lender(spec.key, spec.tool, own, mask)
 
 

@@ -21,6 +21,7 @@ from affcli.lab.learning_run import LearningRun
 from affcli.lab.predicting import fresh_pushes
 from affcli.lab.replaying import replay_run, replay_trial
 from affcli.lab.run_parts import RunParts, beyond_the_box
+from affcli.lab.transferring import lender_of
 from affcli.lab.verifying import verification_spec, verify
 from affcli.lab.viewing import scene_of_behavior, scenes_of_step
 from affcli.report.film import take_title
@@ -203,3 +204,12 @@ def test_a_tool_is_not_grasped_where_there_is_nothing_of_it() -> None:
     with pytest.raises(BadInputError, match="tool half: nothing to grasp at x = 0") as caught:
         parts.spec(short, 0, 0, 1.0)
     assert "\n" not in str(caught.value)
+
+
+def test_it_lends_what_it_did_with_the_grasp_that_its_camera_saw() -> None:
+    spec = several()
+    rows = [r.affordance for r in records() if r.affordance is not None]
+    world = TableWorld(IMPATIENT)
+    lent = lender_of(spec, rows, world.mask(spec)).rows
+    assert [row.step for row in lent] == [r.step for r in rows if r.binding == spec.binding]
+    assert 0 < len(lent) < len(rows)
