@@ -143,6 +143,7 @@ class Explorer(Protocol):
     For each behavior it is asked for `places` (again after the attractor was put back), told of the
     places that were `refused`, asked for the `behavior`, and told what it gave. All that it
     remembers is in its `state`, so that a run can be stopped after any behavior and gone on with.
+    A robot that may hold the tool in several ways has one for each: it sees what was done so.
     """
 
     def places(self, seen: Observation, reaches: Reaches) -> NDArray[np.float64]:

@@ -146,3 +146,26 @@ def test_it_runs_from_the_start_of_python_on(tmp_path: Path) -> None:
     """Not forked from a warm process, as most tests are: migration, learning, table."""
     all_well([executed(*SHORT, "--db", tmp_path / "new.db")])
     one_run(tmp_path / "new.db", 60)
+
+
+def test_several_grasps_are_one_run_and_those_that_cannot_be_leave_nothing(tmp_path: Path) -> None:
+    database = tmp_path / "grasps.db"
+    two = ("--binding", "grasp", "--binding", "grasp:grasp_point=7", "--db", database)
+    (both,) = json_of(*SHORT, *two)
+    assert (both["binding"], both["new"]) == ("grasp 1 or grasp 7", True)
+    again = done(*SHORT, *two)
+    assert again.err.startswith("already learned, nothing to do: stick (run 1, seed 0): ")
+    alone = done(*SHORT, "--db", database)
+    assert "same command" not in alone.err  # another grasp is no other default
+    before = contents(database)
+    for wrong, code, says in (
+        ("grasp:grasp_point=16", 4, "grasp_point = 16 lies beyond the end of the handle, at 15.6"),
+        ("grasp:grasp_point=1", 2, "grasp 1 comes twice; leave one out"),
+    ):
+        ended = executed(*SHORT, *two, "--binding", wrong)
+        assert (ended.code, len(ended.err.splitlines())) == (code, 1)
+        assert says in ended.err
+    ended = executed("invent", "--tool", "stick", "--minutes", "6", *two)
+    assert (ended.code, len(ended.err.splitlines())) == (4, 1)
+    assert "inventing: invents with one grasp; give one --binding" in ended.err
+    assert contents(database) == before

@@ -61,6 +61,12 @@ def right_edge(axes: "Axes") -> float:
     return max(float(x) for polygon in polygons for x, _ in np.asarray(polygon.get_xy()))
 
 
+def lower_edge(axes: "Axes") -> float:
+    """Return how far down the parts of tools reach that a panel has (in)."""
+    polygons = [patch for patch in axes.patches if isinstance(patch, Polygon)]
+    return min(float(y) for polygon in polygons for _, y in np.asarray(polygon.get_xy()))
+
+
 def circles(axes: "Axes") -> list[Circle]:
     return [patch for patch in axes.patches if isinstance(patch, Circle)]
 

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgba_array
 
+from affcli.analysis.regions import parts_at
 from affcli.analysis.row_status import RowStatus
 from affcli.core.behavior import BehaviorCall, BehaviorName
 from affcli.core.geometry import ConvexPolygon
@@ -23,6 +24,7 @@ from tests.report.reading import (
     arrows_in,
     corners,
     kinds_in,
+    lower_edge,
     outlines,
     right_edge,
     texts,
@@ -196,3 +198,17 @@ def test_rows_of_a_turned_wrist_have_a_panel_where_the_tool_is_turned() -> None:
     beside = max(x for part in parts for x, _ in part.outline.vertices)
     # A quarter to the right: what was ahead of the wrist is beside it.
     assert [right_edge(axes) for axes in panels] == [pytest.approx(ahead), pytest.approx(beside)]
+
+
+def test_rows_of_another_grasp_have_panels_of_their_own_over_the_tool_as_it_was_held() -> None:
+    high = BehaviorCall.of(BehaviorName("grasp"), {"grasp_point": 7.0})
+    rows = [affordance(1, call=CALLS[0]), affordance(2, call=CALLS[0], binding=high)]
+    held = parts_at(drawn.T_HOOK, high, 0.0)
+    view = replace(
+        drawn.view([(row, RowStatus.LIVE) for row in rows]), regrasped={high: (held, ())}
+    )
+    panels = {head_of(axes)[0]: axes for axes in affordances_figure(CALLS, [view], KEY).axes}
+    assert panels.keys() == {*TITLES, f"{TITLES[0]}\nGrasp, 7 in"}
+    for title, axes in panels.items():
+        assert lower_edge(axes) == pytest.approx(-7.0 if "Grasp" in title else -1.0)
+        assert len(arrows_in(axes)) == (TITLES[0] in title)

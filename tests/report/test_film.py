@@ -1,13 +1,17 @@
 """Which steps of a trial a film strip shows, and the words over its panels."""
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from affcli.core.behavior import BehaviorCall, BehaviorName
 from affcli.core.records import StoredStep
 from affcli.report.film import (
     COLUMNS,
     MOST_PANELS,
+    Held,
     Shown,
     shown_of,
     take_title,
@@ -128,3 +132,15 @@ def test_how_a_trial_ended_is_said() -> None:
     assert filmed_trial(filmed_step()).course == "solved, 1 step"
     assert filmed_trial(ending="no row left").course == "no row left, 0 steps"
     assert filmed_trial(ending=None).course == "not ended, 0 steps so far"
+
+
+def test_a_step_that_took_the_tool_anew_says_how() -> None:
+    step = filmed_step(3)
+    high = BehaviorCall.of(BehaviorName("grasp"), {"grasp_point": 7.0})
+    anew = replace(step, row=replace(step.row, binding=high), regrasped=True)
+    assert take_title([anew]) == f"{take_title([step])}, grasp 7"
+    film = filmed_trial(step, anew)
+    held = Held(film.parts[:1], film.parts[1:])
+    regrasped = replace(film, regrasped={high: held})
+    assert (regrasped.held(), regrasped.held(step)) == (Held(film.parts, film.missing),) * 2
+    assert regrasped.held(anew) == held
