@@ -34,10 +34,14 @@ INSTALLED_DEV := $(VENV)/.installed-dev
 INSTALLED_BROWSER := $(VENV)/.installed-browser
 INSTALLED_MUTANTS := $(VENV)/.installed-mutants
 
+# KinDER's world has an environment of its own: why stands in its requirements.txt.
+WORLD := $(VENV)/another-world
+INSTALLED_WORLD := $(WORLD)/.installed
+
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help demo quick test test-browser torture mutants check reproduce bench clean FORCE
+.PHONY: help demo quick test test-browser torture mutants check reproduce bench another-world clean FORCE
 
 ## help          list these targets
 help:
@@ -103,6 +107,10 @@ reproduce: $(INSTALLED)
 bench: $(INSTALLED)
 	$(VENV)/bin/python experiments/speed/bench.py --json bench.json
 
+## another-world an environment for KinDER's hook world, .venv/another-world, and the tests of what plays in it
+another-world: $(INSTALLED_WORLD)
+	$(WORLD)/bin/python -m pytest -q -c experiments/another_world/pyproject.toml experiments/another_world/tests
+
 ## clean         remove .venv, caches, build products, demo.db and demo.html; other databases stay
 clean:
 	rm -rf $(VENV) build dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
@@ -136,6 +144,15 @@ install = @echo 'Installing $(1) into $(VENV); the first time this takes a minut
 
 $(INSTALLED): $(MADE) pyproject.toml requirements.lock
 	$(call install,affcli and the libraries it needs,camera$(comma)figures)
+	@touch $@
+
+$(INSTALLED_WORLD): $(MADE) pyproject.toml $(wildcard experiments/another_world/*.toml experiments/another_world/*.txt)
+	@echo "Installing KinDER's hook world into $(WORLD); this takes a minute or two ..." >&2
+	@'$(PYTHON)' -m venv --clear $(WORLD)
+	@$(WORLD)/bin/python -m pip --disable-pip-version-check install -q \
+	  -r experiments/another_world/requirements.txt -e '.[figures]'
+	@$(WORLD)/bin/python -m pip --disable-pip-version-check install -q --no-deps \
+	  -r experiments/another_world/kinder.txt -e experiments/another_world
 	@touch $@
 
 # What check and test need includes what demo needs.
