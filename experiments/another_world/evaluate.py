@@ -146,7 +146,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--planner", required=True, help=f"of affcli; {' or '.join(ABLATIONS)}")
     parser.add_argument("--obstacles", type=int, choices=(0, 1, 5), default=0)
-    parser.add_argument("--resets", type=int, nargs=2, default=(0, 100), metavar=("FIRST", "END"))
+    parser.add_argument("--resets", type=int, nargs=2, default=(200, 300), metavar=("FIRST", "END"))
     parser.add_argument("--db", type=Path, default=DATABASE)
     parser.add_argument("--results", type=Path, default=RESULTS)
     asked = parser.parse_args()

@@ -33,7 +33,7 @@ def tasks(_: Any, *, obstacles: int, first: int, n: int) -> tuple[Task, ...]:
         )
     world = import_module("kinder_hook.world")
     return tuple(
-        Task(NAME, GoalRegion(f"o{obstacles}", Point(0.0, 17.5), 1.0), str(seed), start)
+        Task(NAME, GoalRegion(f"o{obstacles}", Point(start.x, 17.5), 1.0), str(seed), start)
         for seed in range(first, first + n)
         for start in (world.start_of(obstacles, seed),)
     )

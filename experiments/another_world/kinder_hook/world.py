@@ -31,6 +31,8 @@ BLOCK_X, BLOCK_Y, BLOCK_SIDE = (0.583, 2.917), (2.1, 2.95), (0.16, 0.4767)
 """Where blocks are put back, about as by KinDER's resets, and how large they are."""
 IN_TOUCH_X, IN_TOUCH_Y = (0.3, 3.2), (1.9, 3.3)
 """A block outside lies where the hook does not get around it."""
+OTHER_BLOCK = 0.15
+"""While learning, so often the block is taken away for another: KinDER's are of all sizes."""
 MOST_PLACES = 1000
 STATUS = {
     schemas.Placing.DONE: ExecutionStatus.DONE,
@@ -124,7 +126,11 @@ class HookSensor:
 
 @dataclass(frozen=True, slots=True)
 class WallGoal:
-    """The wall, as where the middle of the block as it lies now would touch it; a `Goal`."""
+    """The wall, as where the middle of the block as it lies now would touch it; a `Goal`.
+
+    Distances are taken to one place of it, as those to the paper's goals are to their middle: to the
+    place straight before the block.
+    """
 
     name: str
     episode: Episode
@@ -136,8 +142,9 @@ class WallGoal:
 
     @property
     def center(self) -> Point:
-        """The middle of the wall."""
-        return Point(0.0, IN * MIDDLE)
+        """The place of the wall that is straight before the block."""
+        at = self.episode.block.at
+        return Point(to_inches(at.x, at.y).x, IN * MIDDLE)
 
     def reached(self, seen: Observation) -> bool:
         """Tell whether KinDER said that it is solved."""
@@ -146,8 +153,9 @@ class WallGoal:
     def squared_distance(
         self, at: Point, dx: NDArray[np.float64], dy: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Return how far above it the places are, squared."""
-        return np.maximum(at.y + dy - self.height, 0.0) ** 2
+        """Return how far off it the places are, squared."""
+        above = np.maximum(at.y + dy - self.height, 0.0)
+        return (at.x + dx - self.center.x) ** 2 + above**2
 
     def outline(self) -> ConvexPolygon:
         """Return the strip in which the middle of a block is that touches the wall."""
@@ -170,6 +178,8 @@ class HookExperimenter:
         episode = self.robot.episode
         if self.testing:
             return episode.over
+        if self.rng.random() < OTHER_BLOCK:
+            return True
         at = episode.block.at
         near = IN_TOUCH_X[0] < at.x < IN_TOUCH_X[1] and IN_TOUCH_Y[0] < at.y < IN_TOUCH_Y[1]
         return episode.solved or not near
