@@ -128,8 +128,8 @@ class HookSensor:
 class WallGoal:
     """The wall, as where the middle of the block as it lies now would touch it; a `Goal`.
 
-    Distances are taken to one place of it, as those to the paper's goals are to their middle: to the
-    place straight before the block.
+    Distances are taken to one place of it, as those to the paper's goals are to their middle: to
+    the place straight before the block.
     """
 
     name: str
