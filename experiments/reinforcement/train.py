@@ -14,6 +14,7 @@ from typing import Any
 
 import gymnasium
 import numpy as np
+import torch
 from gymnasium.wrappers import RescaleObservation
 from sb3_contrib import MaskablePPO
 from stable_baselines3 import PPO
@@ -115,6 +116,7 @@ def save(learner: str, seed: int, steps: int, count: int) -> None:
 
 def train(learner: str, seed: int, steps: int, folder: Path) -> None:
     """Train a policy for so many steps of the environment."""
+    torch.set_num_threads(1)
     about = {"seed": seed, "n_steps": EVERY, "device": "cpu", "ent_coef": 0.01}
     if learner == "box":
         before, table, kind = 0, None, PPO
