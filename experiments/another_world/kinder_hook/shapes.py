@@ -7,7 +7,7 @@ where the handle points; upright is `UP`. Nothing here knows KinDER: it can be t
 
 import math
 from collections import deque
-from collections.abc import Callable, Hashable, Iterable
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from itertools import pairwise
 from typing import NamedTuple, TypeVar
 
@@ -134,7 +134,7 @@ def placed(outline: Polygon, at: At) -> Polygon:
 def base_for(hand: At) -> tuple[float, float, float] | None:
     """Return x and y of the base, and the arm's length, for the hand; None for nowhere."""
     cos, sin = math.cos(hand.angle), math.sin(hand.angle)
-    arms = ARMS
+    arms: tuple[float, ...] = ARMS
     if abs(wrapped(hand.angle - UP)) < NEARLY_UP:
         y = min(max(hand.y - ARMS[0], BASE_Y[0]), BASE_Y[1])
         arms = ((hand.y - y) / sin, *ARMS)
@@ -278,7 +278,7 @@ def shortest(start: Node, end: Node, beside: Callable[[Node], Iterable[Node]]) -
     return path[::-1]
 
 
-def turns_of(path: list[tuple[int, ...]]) -> list[tuple[int, ...]]:
+def turns_of(path: Sequence[tuple[int, ...]]) -> list[tuple[int, ...]]:
     """Return the ends of a path and where it turns off."""
     step = [tuple(np.subtract(b, a)) for a, b in pairwise(path)]
     corners = [path[n] for n in range(1, len(path) - 1) if step[n - 1] != step[n]]
