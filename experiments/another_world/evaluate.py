@@ -29,7 +29,7 @@ from affcli.core.geometry import Point
 from affcli.core.ports import Planner
 from affcli.core.specs import Counters, LearningSpec, Protocol, TrialSpec
 from affcli.core.task import GoalRegion, Task
-from affcli.core.trial import Outcome, TrialEnd
+from affcli.core.trial import Outcome
 from affcli.exploration.random_babbling import drawn
 from affcli.procedures.extension_of_reach import TrialLimits, extension_of_reach
 from affcli.store import open_store
@@ -38,6 +38,10 @@ HERE = Path(__file__).parent
 DATABASE, RESULTS = HERE / "another-world.db", HERE / "results.jsonl"
 RANDOM_ROW, RANDOM_TRY = "random row", "random place and behavior"
 ABLATIONS = (RANDOM_ROW, RANDOM_TRY)
+STUCK = 200
+"""Placings in a row that were blocked."""
+ENDED = {Outcome.ATTRACTOR_OUT_OF_REACH: "budget"}
+"""What an outcome is in this world, where it is another than its name says."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,15 +96,19 @@ def episode(
         TrialLimits(BUDGET),
         planner,
     )
-    behaviors = blocked = replicated = 0
-    try:
-        while True:
+    behaviors = blocked = replicated = in_vain = 0
+    ended = "stuck"
+    # Each that is blocked takes no step: after so many in a row no place can be taken up any more.
+    while in_vain < STUCK:
+        try:
             step = next(steps)
-            behaviors += 1
-            blocked += step.execution is None
-            replicated += step.replicated
-    except StopIteration as ended:
-        end: TrialEnd = ended.value
+        except StopIteration as stop:
+            ended = ENDED.get(stop.value.outcome, str(stop.value.outcome))
+            break
+        behaviors += 1
+        blocked += step.execution is None
+        in_vain = in_vain + 1 if step.execution is None else 0
+        replicated += step.replicated
     done = setting.robot.episode
     return {
         "way": way,
@@ -109,7 +117,7 @@ def episode(
         "robot": learned.seed,
         "solved": done.solved,
         "steps": done.steps,
-        "ended": "budget" if end.outcome is Outcome.ATTRACTOR_OUT_OF_REACH else str(end.outcome),
+        "ended": ended,
         "behaviors": behaviors,
         "blocked": blocked,
         "replicated": replicated,
