@@ -25,7 +25,15 @@ FILES = sorted(
 """The others are tools and tasks that these name."""
 SHORT = {"minutes": 2, "settings": {"trial": {"max_steps": 3}}}
 FOLDERS = {
-    *("camera", "carrying_over", "exploration", "extension_of_reach", "grasps", "inventing"),
+    *(
+        "better_robot",
+        "camera",
+        "carrying_over",
+        "exploration",
+        "extension_of_reach",
+        "grasps",
+        "inventing",
+    ),
     "lookahead",
     *("planners", "tool_adaptation"),
 }

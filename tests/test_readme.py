@@ -302,7 +302,7 @@ def test_every_file_that_is_named_is_there(readme: str) -> None:
 def test_the_readme_is_short() -> None:
     assert len(text_of("README.md").splitlines()) <= 200
     assert len(text_of("README.md").encode()) <= 14_000
-    assert len(re.findall(r"!\[", text_of("README.md"))) == 1
+    assert len(re.findall(r"!\[", text_of("README.md"))) <= 3
 
 
 def test_the_readme_leads_to_every_other() -> None:

@@ -3,6 +3,7 @@
 import json
 import re
 from itertools import groupby
+from statistics import fmean
 from typing import Any
 
 import pytest
@@ -13,6 +14,7 @@ REACH = "experiments/extension_of_reach/README.md"
 ADAPTATION = "experiments/tool_adaptation/README.md"
 CAMERA = "experiments/camera/README.md"
 VERIFICATION = "experiments/verification/README.md"
+BETTER = "experiments/better_robot/README.md"
 EXPLORATION = "experiments/exploration/README.md"
 SPEED = "experiments/speed/README.md"
 ANALYSIS = "affcli/analysis/README.md"
@@ -259,3 +261,19 @@ def test_what_each_way_to_explore_solves() -> None:
             low, high = one["paired"]
             line += f" {one['difference']:+.1f} ({low:+.1f} to {high:+.1f}) |"
         assert any(said.startswith(line) for said in lines), line
+
+
+def test_what_the_better_robot_solves() -> None:
+    results = measured("better_robot/results.json")
+    page, front = flowing(BETTER), flowing("README.md")
+    assert f"{results['robots']} robots, seed {results['seed']}" in page
+    for one in results["conditions"]:
+        extension, broken = (one["solved"][name] for name in one["solved"])
+        whole, adapted = (100.0 * count / len(extension) for count in one["whole"].values())
+        line = rf"{one['name']}\W+{one['inventing']:.0f} \+ {one['learning']:.0f}\W+"
+        line += rf"{fmean(extension):.2f}[^|]*\|\W+{whole:.1f} %[^|]*\|\W+"
+        assert re.search(line + rf"{fmean(broken):.2f}[^|]*\|\W+{adapted:.1f} %", page), line
+    better = next(one for one in results["conditions"] if one["name"] == "the better robot")
+    assert set(better["solved"]["extension of reach"]) == {80}
+    assert set(better["solved"]["tool adaptation"]) == {16}
+    assert f"each of {results['robots']} robots" in front
