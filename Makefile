@@ -19,7 +19,7 @@ QUICK = $(wildcard tests/analysis tests/exploration) tests/behaviors tests/confo
 # What `make mutants` lets find changes of the code: these, and what else tests the rooms in process and soon.
 IN_PROCESS = $(QUICK) $(filter-out tests/store/test_processes.py tests/store/test_upgrading.py, \
   $(wildcard tests/store/test_*.py)) $(filter-out tests/lab/test_cluster.py tests/lab/test_workers.py, \
-  $(wildcard tests/lab/test_*.py)) $(addprefix tests/physics/test_,arm.py contact.py surface_friction.py \
+  $(wildcard tests/lab/test_*.py)) tests/api tests/logs tests/own_files $(addprefix tests/physics/test_,arm.py contact.py surface_friction.py \
   wrist_motion.py)
 
 VENV := .venv

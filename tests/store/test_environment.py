@@ -47,6 +47,8 @@ def test_here_all_is_well(database: Path) -> None:
     assert set(found) == {"SQLite", "file system", "disk", "permissions", "database"}
     assert {fact.state for fact in found.values()} == {"ok"}
     assert not any(fact.remedy for fact in found.values())
+    rolled_back = environment.journal_mode_for(sqlite3.sqlite_version_info) != "wal"
+    assert ("rollback journal" in found["SQLite"].value) == rolled_back
 
 
 @pytest.mark.fault(17)

@@ -66,6 +66,8 @@ def test_effects_are_those_that_went_so_far_that_way(store: Store) -> None:
     assert [one.moved for one in store.results.effects(run, Way.NEARER, 3.0)] == [0, 0]
     assert [one.moved for one in store.results.effects(run, Way.FARTHER, 3.5)] == [0, 2]
     assert [one.moved for one in store.results.effects(run, Way.RIGHT, 1.5)] == [0, 1]
+    assert [one.moved for one in store.results.effects(run, Way.LEFT, -2.5)] == [2, 4]
+    assert [one.moved for one in store.results.effects(run, Way.LEFT, -1.5)] == [2, 3]
     spec = trial_spec(counters=Counters.STORED)
     store.trials.save_all(begun(store), run, [replace(record, spec=spec)], ids)
     assert [one.alive for one in store.results.effects(run, Way.FARTHER, 3.5)] == [1, 2]
@@ -139,3 +141,7 @@ def test_the_trials_of_a_broken_tool_are_summed_step_by_step(store: Store) -> No
     assert [(one.trials, len(one.steps)) for one in each] == [(1, 2), (1, 1)]
     assert all(step.change == 0.0 for one in each for step in one.steps)
     assert store.results.trial_groups(session, "t-hook", "t-hook", 1.0, by_robot=True) == ()
+    other = learned(store, 12, spec=learning_spec("stick", behaviors=12)).id
+    spec = trial_spec(tool="stick", shape="l-hook", protocol=BROKEN)
+    save_trial(store, session, other, spec, [trial_step(store.learning.table(other)[0].row(0))])
+    assert store.results.trial_groups(session, "t-hook", "l-hook", 1.0, by_robot=True) == (group,)
