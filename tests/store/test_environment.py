@@ -10,6 +10,7 @@ import pytest
 
 from affcli.store import Fact, database_info, environment, environment_facts
 from affcli.store.environment import file_system
+from affcli.store.journal import journal_mode_for
 
 MOUNTS = """\
 /dev/sda1 / ext4 rw 0 0
@@ -47,7 +48,7 @@ def test_here_all_is_well(database: Path) -> None:
     assert set(found) == {"SQLite", "file system", "disk", "permissions", "database"}
     assert {fact.state for fact in found.values()} == {"ok"}
     assert not any(fact.remedy for fact in found.values())
-    rolled_back = environment.journal_mode_for(sqlite3.sqlite_version_info) != "wal"
+    rolled_back = journal_mode_for(sqlite3.sqlite_version_info) != "wal"
     assert ("rollback journal" in found["SQLite"].value) == rolled_back
 
 
