@@ -20,7 +20,7 @@ MOST_RESETS = 1_000
 
 STINT = 20
 """Behaviors after which a grasp is drawn anew where there are several. Choice: of 10, 20, 40, and
-only when the attractor is put back, as good as any (seeds 110 to 117, ``experiments/grasps``)."""
+only when the attractor is put back, as good as any (seed 110, ``experiments/grasps``)."""
 
 
 @dataclass(slots=True)
