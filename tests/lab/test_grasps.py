@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from affcli.config import Settings
 from affcli.core.geometry import Pose
+from affcli.core.row_filter import RowFilter
 from affcli.core.specs import LearningSpec
 from affcli.core.tool import ToolName
 from affcli.core.trial import BabblingRecord
@@ -21,6 +22,7 @@ from affcli.lab.learning_run import LearningRun
 from affcli.lab.predicting import fresh_pushes
 from affcli.lab.replaying import replay_run, replay_trial
 from affcli.lab.run_parts import RunParts, beyond_the_box
+from affcli.lab.table import listed_rows, taken_out
 from affcli.lab.transferring import lender_of
 from affcli.lab.verifying import verification_spec, verify
 from affcli.lab.viewing import scene_of_behavior, scenes_of_step
@@ -213,3 +215,14 @@ def test_it_lends_what_it_did_with_the_grasp_that_its_camera_saw() -> None:
     lent = lender_of(spec, rows, world.mask(spec)).rows
     assert [row.step for row in lent] == [r.step for r in rows if r.binding == spec.binding]
     assert 0 < len(lent) < len(rows)
+
+
+def test_rows_that_are_taken_out_have_the_region_of_their_own_grasp(store: Store) -> None:
+    run = stored(store, several())
+    regions, _ = taken_out(
+        *(store, "rows", [run], RowFilter(), None),
+        lambda columns, rows: [
+            {c.name: value for c, value in zip(columns, row, strict=True)}["region"] for row in rows
+        ],
+    )
+    assert regions == [region for _, region in listed_rows(store, [run], RowFilter(), None)]
