@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from affcli.behaviors.moving import CONTRACT_ARM
+from affcli.behaviors.moving import CONTRACT_ARM, EXTEND_ARM
 from affcli.core.behavior import BehaviorCall
 from affcli.core.choice import Reason
 from affcli.core.effects import Way
@@ -13,7 +13,7 @@ from affcli.core.specs import Counters, Protocol, TrialRecord
 from affcli.core.trial import Outcome, TrialEnd
 from affcli.core.verification import ReplicationRecord
 from affcli.store import Store
-from tests.factories import EXTEND_5, learning_spec
+from tests.factories import learning_spec
 from tests.store.records import (
     NOW,
     VERSIONS,
@@ -26,7 +26,8 @@ from tests.store.records import (
     verification_spec,
 )
 
-CONTRACT_2 = BehaviorCall.of(CONTRACT_ARM, {"offset_distance": 2.0})
+EXTEND_2 = BehaviorCall.of(EXTEND_ARM, {"offset_distance": 2.0})
+CONTRACT_5 = BehaviorCall.of(CONTRACT_ARM, {"offset_distance": 5.0})
 
 FAR, BACK, BESIDE, STILL = (0.0, 4.0), (0.0, -3.0), (2.0, 0.0), (0.0, 0.0)
 BROKEN = Protocol.TOOL_ADAPTATION
@@ -36,8 +37,8 @@ def babbled(store: Store) -> int:
     """Put a run into the store that did two behaviors; return its number."""
     run = store.learning.begin(learning_spec(behaviors=6), VERSIONS, NOW)
     done = [
-        *((EXTEND_5, FAR), (CONTRACT_2, BACK), (EXTEND_5, BESIDE), (EXTEND_5, STILL)),
-        *((CONTRACT_2, STILL), (EXTEND_5, FAR)),
+        *((EXTEND_2, FAR), (CONTRACT_5, BACK), (EXTEND_2, BESIDE), (EXTEND_2, STILL)),
+        *((CONTRACT_5, STILL), (EXTEND_2, FAR)),
     ]
     steps = [learning_step(n, call=call, moved=moved) for n, (call, moved) in enumerate(done, 1)]
     assert store.learning.append(run.id, 0, steps, None, 31.5, done=True, now=NOW)
@@ -46,9 +47,9 @@ def babbled(store: Store) -> int:
 
 def test_behaviors_are_counted_call_by_call(store: Store) -> None:
     contract, extend = store.results.behavior_groups(babbled(store))
-    assert (contract.call, contract.tried, contract.rows) == (CONTRACT_2, 2, 1)
+    assert (contract.call, contract.tried, contract.rows) == (CONTRACT_5, 2, 1)
     assert (contract.mean_movement, contract.mean_dx, contract.mean_dy) == (3.0, 0.0, -3.0)
-    assert (extend.call, extend.tried, extend.rows) == (EXTEND_5, 4, 3)
+    assert (extend.call, extend.tried, extend.rows) == (EXTEND_2, 4, 3)
     means = (extend.mean_movement, extend.mean_dx, extend.mean_dy)
     assert means == pytest.approx((10.0 / 3.0, 2.0 / 3.0, 8.0 / 3.0))
 
@@ -60,8 +61,8 @@ def test_effects_are_those_that_went_so_far_that_way(store: Store) -> None:
     failed = trial_step(table.row(0), seen=STILL)
     record = TrialRecord(trial_spec(), (failed,), TrialEnd(Outcome.STEP_LIMIT, 1, 6.5))
     assert store.results.effects(run, Way.NEARER, 2.5) == (
-        (CONTRACT_2, 2, 1, 1, 1),
-        (EXTEND_5, 4, 0, 3, 3),
+        (CONTRACT_5, 2, 1, 1, 1),
+        (EXTEND_2, 4, 0, 3, 3),
     )
     assert [one.moved for one in store.results.effects(run, Way.NEARER, 3.0)] == [0, 0]
     assert [one.moved for one in store.results.effects(run, Way.FARTHER, 3.5)] == [0, 2]
