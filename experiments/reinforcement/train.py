@@ -15,7 +15,8 @@ from typing import Any
 import gymnasium
 import numpy as np
 import torch
-from gymnasium.wrappers import RescaleObservation
+from gymnasium import spaces
+from gymnasium.wrappers import TransformObservation
 from sb3_contrib import MaskablePPO
 from stable_baselines3 import PPO
 from stable_baselines3.common.base_class import BaseAlgorithm
@@ -27,12 +28,16 @@ from affcli.gym import RowActions, learned_table
 RESULTS = Path(__file__).parent / "results.jsonl"
 TOOL = "t-hook"
 GOALS = STARTS = ("1", "2", "3", "4")
-TABLE_STEPS = (50, 100, 200, 400, 800)
+TABLE_STEPS = (25, 50, 100, 200, 400, 800)
 """Behaviors of babbling that tables are made of."""
 ROWS_OF = 400
 """Behaviors behind the table whose rows are actions."""
-EVERY = 2048
-"""Steps between two looks, and of a rollout."""
+EVERY, ROLLOUT = 2048, 512
+"""Steps between two looks; steps between two updates of a policy."""
+MIDDLE = (0.0, 22.0, 0.0, 0.0, 12.0, 0.0, *[0.0] * 6, 0.0, 10.0, 0.0, 0.0, 22.0, 0.0)
+SCALE = (8.0, 8.0, 1.0, 8.0, 8.0, 1.0, *[255.0] * 6, 8.0, 8.0, 1.0, 8.0, 8.0, 2.0)
+"""What is subtracted from an observation, and by what the rest is divided: networks like numbers
+about 1, and the limits of the space are far beyond the table."""
 TESTED = 10_000_000
 """Seeds of testing episodes begin here."""
 PLANNERS = ("nested-query", "lookahead")
@@ -62,14 +67,15 @@ class Masked(gymnasium.Wrapper[Any, Any, Any, Any]):
 
 def environment(table: Any = None) -> gymnasium.Env[Any, Any]:
     """Return the environment; with a table, that of its rows."""
+    given = {} if table else {"action": "box"}
     env = gymnasium.make(
-        "affcli.gym:affcli/Reach-v0", tool=TOOL, action="box", reward="dense", sensor="noisy"
+        "affcli.gym:affcli/Reach-v0", tool=TOOL, reward="dense", sensor="noisy", **given
     )
-    if table is None:
-        return RescaleObservation(env, np.float32(-1.0), np.float32(1.0))
-    raw = gymnasium.make("affcli.gym:affcli/Reach-v0", tool=TOOL, reward="dense", sensor="noisy")
-    rows = RowActions(raw, table)
-    return Masked(RescaleObservation(rows, np.float32(-1.0), np.float32(1.0)))
+    env = RowActions(env, table) if table else env
+    middle, scale = np.array(MIDDLE, np.float32), np.array(SCALE, np.float32)
+    near = spaces.Box(-np.inf, np.inf, middle.shape, np.float32)
+    scaled = TransformObservation(env, lambda seen: (seen - middle) / scale, near)
+    return Masked(scaled) if table else scaled
 
 
 def solved(model: BaseAlgorithm, env: gymnasium.Env[Any, Any]) -> int:
@@ -88,14 +94,15 @@ def solved(model: BaseAlgorithm, env: gymnasium.Env[Any, Any]) -> int:
 
 
 class Look(BaseCallback):
-    """Tests the policy before each rollout, and at the end."""
+    """Tests the policy now and then."""
 
     def __init__(self, learner: str, seed: int, env: gymnasium.Env[Any, Any], before: int) -> None:
         super().__init__()
         self._about, self._env, self._before = (learner, seed), env, before
 
     def _on_rollout_start(self) -> None:
-        self.look()
+        if self.num_timesteps % EVERY == 0:
+            self.look()
 
     def _on_step(self) -> bool:
         return True
@@ -117,7 +124,7 @@ def save(learner: str, seed: int, steps: int, count: int) -> None:
 def train(learner: str, seed: int, steps: int, folder: Path) -> None:
     """Train a policy for so many steps of the environment."""
     torch.set_num_threads(1)
-    about = {"seed": seed, "n_steps": EVERY, "device": "cpu", "ent_coef": 0.01}
+    about = {"seed": seed, "n_steps": ROLLOUT, "device": "cpu", "ent_coef": 0.01}
     if learner == "box":
         before, table, kind = 0, None, PPO
     else:
@@ -135,8 +142,8 @@ def plan(planner: str, seed: int, folder: Path) -> None:
     for behaviors in TABLE_STEPS:
         lab = Laboratory(folder / f"{behaviors}.db")
         lab.learn(TOOL, behaviors=behaviors, seed=seed)
-        trials = lab.solve(tool=TOOL, planner=planner, seed=seed)
-        save(planner, seed, behaviors, sum(one.solved for one in trials))
+        trials = [lab.solve(goal, tool=TOOL, planner=planner, seed=seed) for goal in GOALS]
+        save(planner, seed, behaviors, sum(one.solved for goal in trials for one in goal))
 
 
 def main() -> None:
