@@ -51,6 +51,12 @@ class RowActions(gymnasium.Wrapper[Seen, Any, Seen, Action]):
                 f"the table has {next(iter(lacking))}, which is not in the environment's "
                 "repertoire; give it the run's"
             )
+        other = {row.binding for row in table} - set(learned.bindings)
+        if other:
+            raise UsageError(
+                f"the table has rows held by {next(iter(other))}, which the environment does not "
+                "know; give it the run's bindings"
+            )
         self._reach = env.unwrapped
         self._learned = table
         self.table = table.as_learned()

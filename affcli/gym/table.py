@@ -58,7 +58,7 @@ class TableEnv(gymnasium.Env[Seen, Action]):
         tool: a registered one, or a file.
         sensor: noisy, exact, camera, or one of a package.
         repertoire: the exploratory behaviors, by name or file.
-        binding: how the tool is held.
+        binding: how the tool is held; of several it begins with the first, and rows ask for theirs.
         world: where it takes place.
         settings: those that differ, as ``{"friction.tool_puck": 0.3}``.
         action: ``dict``: a behavior and an offset (in); ``box``: numbers of -1 to 1, the offset and
@@ -82,7 +82,7 @@ class TableEnv(gymnasium.Env[Seen, Action]):
         tool: str = "t-hook",
         sensor: SensorKind = "noisy",
         repertoire: Sequence[str] = ("paper",),
-        binding: str = "grasp",
+        binding: str | Sequence[str] = "grasp",
         world: str = "table",
         settings: Mapping[str, Any] | None = None,
         action: str = "dict",
@@ -203,7 +203,8 @@ class TableEnv(gymnasium.Env[Seen, Action]):
                 self._seen = sensor.observe()
             status = done.status.value
             if done.call == call:
-                row = made_row(1, self.setting.binding, done, start, self.seen)
+                held = robot.holding or self.setting.binding
+                row = made_row(1, held, done, start, self.seen)
         return row, told_of(robot, str(call), status)
 
     def _asked(self, action: Action) -> tuple[Point, BehaviorCall]:

@@ -210,9 +210,12 @@ def _setting_words(name: str) -> str:
 
 def _minutes(store: Store, condition: Condition) -> float | None:
     """Return how long the robots of a condition learned with each tool, as they were to (min); None
-    where they learned nothing, as those that are told what pushes do.
+    where they learned nothing, as those that are told what pushes do, or only borrow.
+
+    What they took to invent before, or to learn with the tools from which they borrow, is not with
+    the tool, and does not count here.
     """
-    runs = store.learning.runs(session_id=condition.session.id)
+    runs = store.learning.runs(session_id=condition.session.id, tested=True)
     lengths = [
         60.0 * run.spec.hours if run.spec.hours is not None else run.robot_seconds / 60.0
         for run in runs
@@ -222,8 +225,8 @@ def _minutes(store: Store, condition: Condition) -> float | None:
 
 
 def _begun(store: Store, condition: Condition) -> Sequence[LearningRunInfo]:
-    """Return the learning runs of a condition."""
-    runs = store.learning.runs(session_id=condition.session.id)
+    """Return the learning runs of a condition whose tables its trials used."""
+    runs = store.learning.runs(session_id=condition.session.id, tested=True)
     if not runs or not all(run.robot_seconds for run in runs):
         raise UsageError(f"{condition.name}: nothing learned; name another session")
     return runs

@@ -166,7 +166,12 @@ class Learning:
         return reading.learning_run(found)
 
     def runs(
-        self, *, tool: str | None = None, session_id: int | None = None, status: str | None = None
+        self,
+        *,
+        tool: str | None = None,
+        session_id: int | None = None,
+        status: str | None = None,
+        tested: bool = False,
     ) -> tuple[LearningRunInfo, ...]:
         """Return the stored runs that can be read, oldest first; DatabaseError if none of them can.
 
@@ -175,8 +180,10 @@ class Learning:
             session_id: those that the robots of this session used, also when another condition of
                 their experiment learned them; None for those that stand for themselves.
             status: only ``running`` or only ``done`` ones.
+            tested: only those whose tables trials of the session used: not those in which its
+                robots invented, nor those from which they borrowed.
         """
-        wanted = selected_runs().where(used_in(session_id))
+        wanted = selected_runs().where(_tested_in(session_id) if tested else used_in(session_id))
         for column, value in (("tool", tool), ("status", status)):
             if value is not None:
                 wanted = wanted.where(learning_run.c[column] == value)
@@ -377,9 +384,14 @@ def used_in(session_id: int | None) -> sa.ColumnElement[bool]:
     c = learning_run.c
     if session_id is None:
         return c.session_id.is_(None)
-    used = sa.select(trial.c.learning_run_id).where(trial.c.session_id == session_id)
     # The first as the unique index spells it.
-    return sa.or_(sa.func.coalesce(c.session_id, 0) == session_id, c.id.in_(used))
+    return sa.or_(sa.func.coalesce(c.session_id, 0) == session_id, _tested_in(session_id))
+
+
+def _tested_in(session_id: int | None) -> sa.ColumnElement[bool]:
+    """Tell whether trials of a session used the table of a learning run."""
+    used = sa.select(trial.c.learning_run_id).where(trial.c.session_id == session_id)
+    return learning_run.c.id.in_(used)
 
 
 def insert_run(connection: sa.Connection, row: Mapping[str, Any], spec: LearningSpec) -> int:

@@ -5,6 +5,7 @@ import importlib
 import json
 import math
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -183,6 +184,9 @@ def test_rows_that_the_robot_does_not_have_are_refused(database: Path) -> None:
         RowActions(gymnasium.make(REACH), AffordanceTable())
     with pytest.raises(UsageError, match="no row of the table has the colour of the stick"):
         RowActions(gymnasium.make(REACH, tool="stick"), table)
+    with pytest.raises(UsageError, match="rows held by grasp 1, which the environment does not"):
+        RowActions(gymnasium.make(REACH, binding="grasp:grasp_point=7"), table)
+    RowActions(gymnasium.make(REACH, binding=["grasp:grasp_point=7", "grasp"]), table)
     rows = RowActions(gymnasium.make(REACH), table)
     rows.reset(seed=0)
     with pytest.raises(ValueError, match=f"row {len(table)}: must lie in 0 to {len(table) - 1}"):
@@ -259,3 +263,16 @@ def test_the_readme_runs(
         exec(code, known)  # noqa: S102  # our own
     assert capsys.readouterr().out.split()[0] in ("True", "False")
     assert len(known["seen"]) == 18
+
+
+def test_a_row_is_of_the_grasp_that_holds_the_tool(database: Path) -> None:
+    """As a row that was used before asked for it."""
+    env = gymnasium.make(BABBLE, binding=["grasp", "grasp:grasp_point=4"]).unwrapped
+    assert isinstance(env, Babble)
+    env.reset(seed=3)
+    higher = env.learned.bindings[1]
+    for row in learned_table(database):
+        env.step(replace(row, binding=higher))
+        if env.rows:
+            break
+    assert {row.binding for row in env.rows} == {higher}

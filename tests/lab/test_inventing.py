@@ -16,7 +16,9 @@ from affcli.core.records import LearningRunInfo
 from affcli.core.specs import LearningSpec
 from affcli.errors import AffcliError, BadInputError, UsageError
 from affcli.lab import inventing, learning
+from affcli.lab.conditions import experiment_named
 from affcli.lab.conducting import begin, run
+from affcli.lab.courses import curves_of
 from affcli.lab.definition import experiment_of
 from affcli.lab.inventing import with_inventions
 from affcli.lab.learning import learn
@@ -224,6 +226,10 @@ def test_each_robot_of_an_experiment_invents_for_itself_once(tmp_path: Path) -> 
         assert len(store.learning.runs(session_id=1)) == 2
         used = "select count(distinct learning_run_id) from trial where session_id = "
         assert [run_sql(path, f"{used}{n}").rows for n in (1, 2, 3)] == [((2,),)] * 3
+        conditions = experiment_named(store, "two")
+        lines = curves_of(store, conditions, "solved", "minutes").lines
+        # The time that was taken to invent, in a run of the second condition, is not with the tool.
+        assert [[point.x for point in line.points] for line in lines] == [[2.0]] * 3
         (_, [kind]) = curves_of_robots(store, 2)
         assert (kind.tool, kind.robots) == ("t-hook", 2)
     assert not any(found.wrong for found in check(path))
