@@ -19,6 +19,15 @@ EXPLORATION = "experiments/exploration/README.md"
 SPEED = "experiments/speed/README.md"
 ANALYSIS = "affcli/analysis/README.md"
 
+FRONT = {
+    "the paper's five hours": "the paper's",
+    "the better robot": r"\*\*all three\*\*",
+    "without inventing": "without inventing",
+    "without focus": "without focus",
+    "without lookahead": "without lookahead",
+}
+"""Conditions of the better robot that stand on the first page, by the words there."""
+
 
 def measured(path: str) -> Any:
     """Return what an experiment wrote."""
@@ -273,7 +282,26 @@ def test_what_the_better_robot_solves() -> None:
         line = rf"{one['name']}\W+{one['inventing']:.0f} \+ {one['learning']:.0f}\W+"
         line += rf"{fmean(extension):.2f}[^|]*\|\W+{whole:.1f} %[^|]*\|\W+"
         assert re.search(line + rf"{fmean(broken):.2f}[^|]*\|\W+{adapted:.1f} %", page), line
-    better = next(one for one in results["conditions"] if one["name"] == "the better robot")
+    by_name = {one["name"]: one for one in results["conditions"]}
+    better = by_name["the better robot"]
     assert set(better["solved"]["extension of reach"]) == {80}
     assert set(better["solved"]["tool adaptation"]) == {16}
     assert f"each of {results['robots']} robots" in front
+    for name, told in FRONT.items():
+        one = by_name[name]
+        extension, broken = (fmean(one["solved"][protocol]) for protocol in one["solved"])
+        whole = 100.0 * one["whole"]["extension of reach"] / results["robots"]
+        minutes = one["inventing"] + one["learning"]
+        line = rf"\| {told} \| \W*{minutes:g}\W*\| \W*{extension:.1f}"
+        line = line.removesuffix(r".0") + rf"[^|]*\| \W*{whole:.1f}".removesuffix(".0")
+        assert re.search(line + rf" %[^|]*\| \W*{broken:.1f}".removesuffix(".0"), front), line
+    left_out = {(*cell[:3], cell[3]): cell[4] for cell in by_name["without inventing"]["failed"]}
+    pulled = left_out["stick", "stick", "1", "step limit"]
+    assert f"{pulled} of the {sum(left_out.values())} failures are the limit" in page
+    failed = {(tool, goal, end): n for tool, _, goal, end, n in by_name["without focus"]["failed"]}
+    lost = sum(failed["l-hook", goal, "attractor out of reach"] for goal in "1234")
+    limit = sum(failed[tool, "2", "step limit"] for tool in ("stick", "l-stick"))
+    assert f"lose the puck with the L-hook ({lost} trials)" in page
+    assert f"within 60 steps ({limit})" in page
+    fifty = {(t, g, end): n for t, _, g, end, n in by_name["within 50 minutes"]["failed"]}
+    assert f"({fifty['stick', '1', 'step limit']} trials, by the limit of steps)" in page

@@ -33,6 +33,11 @@ HEADS = (
     *("condition", "minutes", "of 80", "robots with 80", "of 16, broken", "robots with 16"),
     *("steps, s", "failed trials, of 96"),
 )
+FAILED = """
+SELECT tool, shape, goal, outcome, COUNT(*) FROM trial
+WHERE session_id = ? AND outcome <> 'solved' AND (shape <> tool) = (protocol = 'tool adaptation')
+GROUP BY 1, 2, 3, 4 ORDER BY 5 DESC, 1, 2, 3, 4
+"""
 TRIALS = """
 SELECT outcome, COUNT(*), SUM(steps), SUM(robot_seconds) FROM trial
 WHERE session_id = ? AND protocol = ? AND (shape <> tool) = (protocol = 'tool adaptation')
@@ -49,6 +54,7 @@ class Told(NamedTuple):
         inventing, learning: robot minutes for these, with all tools.
         solved: by protocol, of each robot.
         failures: by protocol and outcome, in all.
+        failed: by tool held and goal, with the outcome and how many, in all; most first.
         steps, seconds: of a solved trial of the extension of reach, mean.
     """
 
@@ -60,6 +66,7 @@ class Told(NamedTuple):
     learning: float
     solved: Mapping[str, list[int]]
     failures: Mapping[Protocol, Mapping[str, int]]
+    failed: list[tuple[str, str, str, str, int]]
     steps: float
     seconds: float
 
@@ -125,6 +132,7 @@ def told_of(store: Store, driver: sqlite3.Connection, condition: Condition, life
         60.0 * life.hours * len(life.tools),
         solved,
         failures,
+        driver.execute(FAILED, (session.id,)).fetchall(),
         steps / trials,
         seconds / trials,
     )
