@@ -42,12 +42,12 @@ def main() -> None:
         axes.plot(steps, means, lw=2.0, ms=5, **marked)
         print(f"{learner} ({len(seeds)} seeds):", dict(zip(steps, means, strict=True)))
     axes.set_ylim(0.0, TASKS + 0.3)
-    axes.set_xscale("symlog", linthresh=50)
-    axes.set_xlim(0, None)
+    axes.set_xscale("log")
+    axes.set_xlim(20, 50_000)
     axes.set_xlabel("behaviors tried: by babbling, and by reinforcement learning")
     axes.set_ylabel("tasks of the T-hook solved, of 16")
     axes.spines[["top", "right"]].set_visible(False)
-    axes.legend(frameon=False, loc="center right")
+    axes.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.02, 0.4))
     figure.savefig(OUT, dpi=130)
 
 
