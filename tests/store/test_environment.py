@@ -10,7 +10,6 @@ import pytest
 
 from affcli.store import Fact, database_info, environment, environment_facts
 from affcli.store.environment import file_system
-from affcli.store.journal import journal_mode_for
 
 MOUNTS = """\
 /dev/sda1 / ext4 rw 0 0
@@ -48,8 +47,6 @@ def test_here_all_is_well(database: Path) -> None:
     assert set(found) == {"SQLite", "file system", "disk", "permissions", "database"}
     assert {fact.state for fact in found.values()} == {"ok"}
     assert not any(fact.remedy for fact in found.values())
-    rolled_back = journal_mode_for(sqlite3.sqlite_version_info) != "wal"
-    assert ("rollback journal" in found["SQLite"].value) == rolled_back
 
 
 @pytest.mark.fault(17)
@@ -73,8 +70,9 @@ def test_a_network_file_system_is_pointed_out(
 def test_a_write_ahead_log_that_this_sqlite_cannot_be_trusted_with(
     database: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(environment, "journal_mode_for", lambda version: "delete")
-    assert "not a write-ahead log" in facts(database)["SQLite"].value
+    for mode, says in (("wal", "writers use a write-ahead"), ("delete", "not a write-ahead log")):
+        monkeypatch.setattr(environment, "journal_mode_for", lambda version, mode=mode: mode)
+        assert says in facts(database)["SQLite"].value
     info = database_info(database)
     changed = type(info)(**{f: getattr(info, f) for f in info.__slots__} | {"journal_mode": "wal"})
     monkeypatch.setattr(environment, "database_info", lambda path: changed)
@@ -82,7 +80,8 @@ def test_a_write_ahead_log_that_this_sqlite_cannot_be_trusted_with(
 
 
 def test_what_must_be_mended_says_how(database: Path, tmp_path: Path) -> None:
-    assert facts(tmp_path / "no" / "x.db")["folder"].state == "bad"
+    nowhere = facts(tmp_path / "no" / "x.db")["folder"]
+    assert (nowhere.state, nowhere.value) == ("bad", f"{tmp_path / 'no'}: does not exist")
     junk = tmp_path / "junk.db"
     junk.write_text("not a database, but longer than a header " * 20)
     assert facts(junk)["database"].state == "bad"

@@ -26,6 +26,7 @@ from tests.store.records import (
     verification_spec,
 )
 
+EXTEND_1 = BehaviorCall.of(EXTEND_ARM, {"offset_distance": 1.0})
 EXTEND_2 = BehaviorCall.of(EXTEND_ARM, {"offset_distance": 2.0})
 CONTRACT_5 = BehaviorCall.of(CONTRACT_ARM, {"offset_distance": 5.0})
 
@@ -34,21 +35,22 @@ BROKEN = Protocol.TOOL_ADAPTATION
 
 
 def babbled(store: Store) -> int:
-    """Put a run into the store that did two behaviors; return its number."""
-    run = store.learning.begin(learning_spec(behaviors=6), VERSIONS, NOW)
+    """Put a run into the store that did three calls; return its number."""
+    run = store.learning.begin(learning_spec(behaviors=7), VERSIONS, NOW)
     done = [
         *((EXTEND_2, FAR), (CONTRACT_5, BACK), (EXTEND_2, BESIDE), (EXTEND_2, STILL)),
-        *((CONTRACT_5, STILL), (EXTEND_2, FAR)),
+        *((CONTRACT_5, STILL), (EXTEND_2, FAR), (EXTEND_1, STILL)),
     ]
     steps = [learning_step(n, call=call, moved=moved) for n, (call, moved) in enumerate(done, 1)]
-    assert store.learning.append(run.id, 0, steps, None, 31.5, done=True, now=NOW)
+    assert store.learning.append(run.id, 0, steps, None, 36.75, done=True, now=NOW)
     return run.id
 
 
 def test_behaviors_are_counted_call_by_call(store: Store) -> None:
-    contract, extend = store.results.behavior_groups(babbled(store))
+    contract, once, extend = store.results.behavior_groups(babbled(store))
     assert (contract.call, contract.tried, contract.rows) == (CONTRACT_5, 2, 1)
     assert (contract.mean_movement, contract.mean_dx, contract.mean_dy) == (3.0, 0.0, -3.0)
+    assert (once.call, once.tried, once.rows, once.mean_dx) == (EXTEND_1, 1, 0, None)
     assert (extend.call, extend.tried, extend.rows) == (EXTEND_2, 4, 3)
     means = (extend.mean_movement, extend.mean_dx, extend.mean_dy)
     assert means == pytest.approx((10.0 / 3.0, 2.0 / 3.0, 8.0 / 3.0))
@@ -62,16 +64,17 @@ def test_effects_are_those_that_went_so_far_that_way(store: Store) -> None:
     record = TrialRecord(trial_spec(), (failed,), TrialEnd(Outcome.STEP_LIMIT, 1, 6.5))
     assert store.results.effects(run, Way.NEARER, 2.5) == (
         (CONTRACT_5, 2, 1, 1, 1),
+        (EXTEND_1, 1, 0, 0, 0),
         (EXTEND_2, 4, 0, 3, 3),
     )
-    assert [one.moved for one in store.results.effects(run, Way.NEARER, 3.0)] == [0, 0]
-    assert [one.moved for one in store.results.effects(run, Way.FARTHER, 3.5)] == [0, 2]
-    assert [one.moved for one in store.results.effects(run, Way.RIGHT, 1.5)] == [0, 1]
-    assert [one.moved for one in store.results.effects(run, Way.LEFT, -2.5)] == [2, 4]
-    assert [one.moved for one in store.results.effects(run, Way.LEFT, -1.5)] == [2, 3]
+    assert [one.moved for one in store.results.effects(run, Way.NEARER, 3.0)] == [0, 0, 0]
+    assert [one.moved for one in store.results.effects(run, Way.FARTHER, 3.5)] == [0, 0, 2]
+    assert [one.moved for one in store.results.effects(run, Way.RIGHT, 1.5)] == [0, 0, 1]
+    assert [one.moved for one in store.results.effects(run, Way.LEFT, -2.5)] == [2, 1, 4]
+    assert [one.moved for one in store.results.effects(run, Way.LEFT, -1.5)] == [2, 1, 3]
     spec = trial_spec(counters=Counters.STORED)
     store.trials.save_all(begun(store), run, [replace(record, spec=spec)], ids)
-    assert [one.alive for one in store.results.effects(run, Way.FARTHER, 3.5)] == [1, 2]
+    assert [one.alive for one in store.results.effects(run, Way.FARTHER, 3.5)] == [1, 0, 2]
 
 
 def test_intervals_count_what_ended_in_them(store: Store) -> None:
@@ -80,7 +83,7 @@ def test_intervals_count_what_ended_in_them(store: Store) -> None:
     learned(store)
     told = store.results.learning_intervals(20.0)
     assert list(told) == [run, run + 1]
-    assert told[run] == [LearningInterval(run, 0, 3, 3), LearningInterval(run, 1, 3, 1)]
+    assert told[run] == [LearningInterval(run, 0, 3, 3), LearningInterval(run, 1, 4, 1)]
 
 
 def test_why_the_first_of_the_trials_counts_for_nothing(store: Store) -> None:

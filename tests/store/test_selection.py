@@ -40,16 +40,23 @@ def call(name: BehaviorName, inches: float) -> BehaviorCall:
 
 @pytest.fixture(scope="module")
 def varied(empty_database: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Three runs, two of them of one tool, in which behaviors and counters vary."""
+    """Three runs, two of them of one tool, in which behaviors and counters vary.
+
+    They were learned in turn, a chunk each: the ids of the rows are not in the order of the runs.
+    """
     path = Path(shutil.copy(empty_database, tmp_path_factory.mktemp("varied") / "varied.db"))
     with open_store(path, create=False, write=True) as store:
-        for tool, seed in (("t-hook", 0), ("stick", 0), ("t-hook", 1)):
-            steps = [
-                learning_step(n, moved=(0.0, 4.0), call=call(NAMES[n % 3], 2.0 + 3.0 * (n % 2)))
-                for n in range(1, 13)
-            ]
-            run = store.learning.begin(learning_spec(tool, seed=seed), VERSIONS, NOW)
-            store.learning.append(run.id, 0, steps, None, 1.0, done=True, now=NOW)
+        specs = [learning_spec(t, seed=n) for t, n in (("t-hook", 0), ("stick", 0), ("t-hook", 1))]
+        runs = [store.learning.begin(spec, VERSIONS, NOW).id for spec in specs]
+        steps = [
+            learning_step(n, moved=(0.0, 4.0), call=call(NAMES[n % 3], 2.0 + 3.0 * (n % 2)))
+            for n in range(1, 13)
+        ]
+        for first in (0, 6):
+            chunk = steps[first : first + 6]
+            for run in runs:
+                over = first > 0
+                assert store.learning.append(run, first, chunk, None, 1.0, done=over, now=NOW)
         with store.database.writing() as connection:
             connection.exec_driver_sql(
                 "UPDATE affordance"
