@@ -77,7 +77,11 @@ class StagedTable:
         )
 
     def asked(
-        self, call: BehaviorCall, at: Point, without: int = 0, held: BehaviorCall | None = None
+        self,
+        call: BehaviorCall,
+        at: Point,
+        without: int | None = None,
+        held: BehaviorCall | None = None,
     ) -> dict[int, Prediction]:
         """Return what each stage predicts; see `TablePredictor.predict`."""
         return {

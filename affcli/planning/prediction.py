@@ -50,7 +50,7 @@ class TablePredictor:
         self,
         call: BehaviorCall,
         offset: Point,
-        without: int = 0,
+        without: int | None = None,
         held: BehaviorCall | None = None,
     ) -> Movement:
         """Return the movement of the nearest row of this behavior and parameter.
@@ -58,7 +58,8 @@ class TablePredictor:
         Args:
             call: what will be executed.
             offset: the attractor as seen from the wrist (in).
-            without: the row of this step is not asked; 0 for none.
+            without: the row of this step is not asked; None to ask all: a borrowed row
+                can have step 0.
             held: how the tool is held: only rows that were made so are asked; None for all.
 
         Returns:
@@ -69,7 +70,7 @@ class TablePredictor:
             return NO_MOVEMENT
         dx, dy = table.offset_x - offset.x, table.offset_y - offset.y
         squared = dx * dx + dy * dy
-        if without:
+        if without is not None:
             squared[self._steps[call, held] == without] = math.inf
         nearest = int(squared.argmin())
         if math.sqrt(float(squared[nearest])) > self._radius:
@@ -77,7 +78,10 @@ class TablePredictor:
         return table.row(nearest).expected_movement
 
     def mean_movement(
-        self, call: BehaviorCall, without: int = 0, held: BehaviorCall | None = None
+        self,
+        call: BehaviorCall,
+        without: int | None = None,
+        held: BehaviorCall | None = None,
     ) -> Movement:
         """Return the mean movement of all rows of this behavior and parameter: wherever it lies.
 
@@ -86,7 +90,8 @@ class TablePredictor:
         table = self._tables.get((call, held))
         if table is None:
             return NO_MOVEMENT
-        asked = self._steps[call, held] != without
+        steps = self._steps[call, held]
+        asked = np.ones(len(steps), dtype=bool) if without is None else steps != without
         if not asked.any():
             return NO_MOVEMENT
         columns = (table.movement_x, table.movement_y, table.movement_z)
