@@ -97,7 +97,8 @@ class Laboratory:
                 one, or several.
             sensor: ``noisy``, ``exact`` or ``camera``.
             note: what you want to remember of it.
-            transfer_from: runs from which it borrows first, as ``"1,2"``; then minutes may be 0.
+            transfer_from: runs from which it borrows first, as ``"1,2"``; then hours or minutes may
+                be 0.
 
         Raises:
             UsageError, BadInputError: something of this cannot be; the message says what can.
@@ -106,7 +107,7 @@ class Laboratory:
             raise UsageError("give one of hours, minutes and behaviors")
         kind = None if sensor is None else str(registry.component("sensors", sensor))
         said = with_sensor(settings_by_name(settings or {}, "settings"), kind)
-        if minutes == 0.0 and transfer_from is not None:
+        if 0.0 in (hours, minutes) and transfer_from is not None:
             hours = 0.0
         elif minutes is not None:
             hours = _within("minutes", minutes, 60.0 * LONGEST_HOURS) / 60.0
@@ -124,7 +125,11 @@ class Laboratory:
             world=world,
         )
         spec = parts.spec(tool, _whole("seed", seed, 0, LARGEST_SEED), 0, hours, behaviors)
-        with self._opened(create=True, write=True) as store:
+        if not isinstance(transfer_from, str | None):
+            raise BadInputError(
+                f"transfer_from = {one_line(transfer_from, 40)}: must be a text as '1,2'"
+            )
+        with self._opened(create=transfer_from is None, write=True) as store:
             if transfer_from is not None:
                 transfer = lab.transferring.transfer_from(store, transfer_from)
                 spec = replace(spec, transfer=transfer)

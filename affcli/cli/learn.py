@@ -25,7 +25,7 @@ from affcli.cli.options import (
     World,
     check_count,
     check_if_given,
-    checked_hours,
+    checked_hours_or_none,
     checked_minutes_or_none,
     checked_note,
 )
@@ -48,7 +48,7 @@ Hours = Annotated[
         "--hours",
         help="Robot hours; 1 if not given.",
         metavar="H",
-        callback=check_if_given(checked_hours),
+        callback=check_if_given(checked_hours_or_none),
     ),
 ]
 Minutes = Annotated[
@@ -132,14 +132,15 @@ def learn(
     own = (*(one is not None for one in lengths), seed, sensor, config, changes, transfer_from)
     own = (*own, repertoire, binding, explorer, world)
     _check_together(names, lengths, resume=resume, own=any((*own, note)))
-    if minutes == 0.0 and transfer_from is None:
-        raise BadInputError(
-            "--minutes 0.0: must be more than 0, but for what only borrows: --transfer-from RUN,..."
-        )
+    given = "--hours" if minutes is None else "--minutes"
     if minutes is not None:
         hours = minutes / 60.0
     elif behaviors is None and hours is None:
         hours = 1.0
+    if hours == 0.0 and transfer_from is None:
+        raise BadInputError(
+            f"{given} 0.0: must be more than 0, but for what only borrows: --transfer-from RUN,..."
+        )
 
     settings = with_sensor(load_settings(config, changes or ()), sensor)
     parts = lab.run_parts.RunParts.chosen(
@@ -207,20 +208,23 @@ def begun_runs(
 ) -> tuple[list[LearningRunInfo], list[str]]:
     """Return the runs as far as they came, and why others cannot go on.
 
-    A run whose parts are not all here does not keep the others from going on, unless `all_or_none`.
+    A run whose parts are not all here does not keep the others from going on, unless `all_or_none`:
+    then none is begun.
     """
-    runs, stuck = [], []
     for spec in specs:
         for alike in lab.learning.made_by_other_defaults(store, spec):
             say(_in_words(alike))
+        found = store.learning.find(spec)
+        gone = lab.transferring.lenders_gone(store, spec)
+        if gone and found is not None and found.status != "done":
+            say(gone)
+    if all_or_none:
+        return lab.learning.all_begun(store, specs, now, note, say), []
+    runs, stuck = [], []
+    for spec in specs:
         try:
-            found = store.learning.find(spec)
-            if found is not None and found.status != "done" and spec.transfer is not None:
-                say(lab.transferring.lenders_gone(store, spec))
             runs.append(lab.learning.begun(store, spec, now, note, say))
         except BadInputError as error:
-            if all_or_none:
-                raise
             stuck.append(f"the interrupted {spec.tool}, seed {spec.seed}: {error}")
     return runs, stuck
 

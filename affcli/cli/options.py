@@ -58,9 +58,9 @@ def checked_seed(text: str) -> int:
     return seed
 
 
-def checked_hours(hours: float) -> float:
-    """Return the hours; BadInputError when they do not lie in (0, 10000]."""
-    return _checked_time("--hours", hours, 1.0)
+def checked_hours_or_none(hours: float) -> float:
+    """Return the hours; BadInputError when they do not lie in [0, 10000]."""
+    return _checked_time("--hours", hours, 1.0, none=True)
 
 
 def checked_minutes(minutes: float) -> float:
@@ -70,11 +70,13 @@ def checked_minutes(minutes: float) -> float:
 
 def checked_minutes_or_none(minutes: float) -> float:
     """Return the minutes, which may be 0; BadInputError as `checked_minutes`."""
-    return minutes if minutes == 0.0 else checked_minutes(minutes)
+    return _checked_time("--minutes", minutes, 60.0, none=True)
 
 
-def _checked_time(option: str, given: float, of_an_hour: float) -> float:
-    """Return a time; BadInputError when it is not that of a run."""
+def _checked_time(option: str, given: float, of_an_hour: float, *, none: bool = False) -> float:
+    """Return a time; BadInputError when it is not that of a run, or 0 without `none`."""
+    if none and given == 0.0:
+        return 0.0  # of -0 too: they are equal, and so must be their keys
     if not (math.isfinite(given) and 0.0 < given / of_an_hour <= LONGEST_HOURS):
         most = of_an_hour * LONGEST_HOURS
         raise BadInputError(f"{option} {given}: must be more than 0 and at most {most:g}")

@@ -196,7 +196,8 @@ def _hours(value: object, of_an_hour: float) -> float:
         raise BadInputError(
             f"{one_line(value, 40)} must be a number of more than 0 and at most {most:g}"
         )
-    return value / of_an_hour  # type: ignore[operator]
+    # Adding zero makes -0 into 0: they are equal, and so must be their keys.
+    return value / of_an_hour + 0.0  # type: ignore[operator]
 
 
 def _named_conditions(

@@ -86,53 +86,73 @@ def begun(
     note: str | None = None,
     tell: Callable[[str], object] = str,
 ) -> LearningRunInfo:
-    """Return the stored run of a spec, as far as it came; begun if there is none.
+    """Return the stored run of a spec, as far as it came; begun if there is none: `all_begun`."""
+    (info,) = all_begun(store, [spec], now, note, tell)
+    return info
+
+
+def all_begun(
+    store: Store,
+    specs: Sequence[LearningSpec],
+    now: Callable[[], str],
+    note: str | None = None,
+    tell: Callable[[str], object] = str,
+) -> list[LearningRunInfo]:
+    """Return the stored runs of specs, as far as they came; those that are missing are begun, or
+    none is.
 
     Args:
         store: open for writing.
-        spec: which run.
+        specs: which runs.
         now: gives the time as ISO text, for the record only.
-        note: written on it, in place of the one it has; None to leave that.
-        tell: is told what was made beside it, in lines.
+        note: written on them, in place of those they have; None to leave these.
+        tell: is told what was made beside them, in lines.
 
     Raises:
         BadInputError: a part that this affcli lacks, or has in another version.
-        UsageError: it cannot borrow what it is to borrow.
-        DatabaseError: what it needs to go on is missing.
+        UsageError: one cannot borrow what it is to borrow.
+        DatabaseError: what one needs to go on is missing.
     """
-    info = store.learning.find(spec)
-    if info is None or info.status != "done":
-        # Only now: who finds the run done needs no physics engine.
-        from affcli.lab.learning_run import LearningRun, gone_on_with
-        from affcli.lab.versions import versions
-
-        run = LearningRun(spec) if info is None else gone_on_with(info)
-        made = versions(run.world, spec.sensor)
-        if spec.transfer is None or info is not None:
-            info = store.learning.begin(spec, made, now())
-        else:
-            info = _begun_with_rows(store, spec, made, now, tell)
+    found = {spec.key: (spec, store.learning.find(spec)) for spec in specs}
+    runs = {key: i for key, (_, i) in found.items() if i is not None and i.status == "done"}
+    # Before the first is begun: what keeps another from it leaves none behind.
+    missing = {
+        key: _beginning(store, spec, info, tell)
+        for key, (spec, info) in found.items()
+        if key not in runs
+    }
+    if missing:
+        with store.turn():
+            runs |= {key: begin(now()) for key, begin in missing.items()}
     if note is not None:
-        store.runs.note(info.id, note)
-        info = store.learning.run(info.id)
-    return info
+        for key, run in runs.items():
+            store.runs.note(run.id, note)
+            runs[key] = store.learning.run(run.id)
+    return [runs[spec.key] for spec in specs]
 
 
-def _begun_with_rows(
-    store: Store,
-    spec: LearningSpec,
-    versions: Mapping[str, str],
-    now: Callable[[], str],
-    tell: Callable[[str], object],
-) -> LearningRunInfo:
-    """Begin a run with the rows that it borrows."""
+def _beginning(
+    store: Store, spec: LearningSpec, info: LearningRunInfo | None, tell: Callable[[str], object]
+) -> Callable[[str], LearningRunInfo]:
+    """Return what begins a run that is not done, at a time."""
+    # Only now: who finds the run done needs no physics engine.
+    from affcli.lab.learning_run import LearningRun, gone_on_with
     from affcli.lab.transferring import borrowed_from_store
+    from affcli.lab.versions import versions
 
+    run = LearningRun(spec) if info is None else gone_on_with(info)
+    made = versions(run.world, spec.sensor)
+    if spec.transfer is None or info is not None:
+        return lambda at: store.learning.begin(spec, made, at)
     mask, lent = borrowed_from_store(store, spec, tell)
-    with store.turn():
-        info = store.learning.begin(spec, versions, now(), borrowing=lent)
-        store.transfers.save_mask(info.id, mask)
-    return info
+
+    def begin(at: str) -> LearningRunInfo:
+        """Begin it with the rows that it borrows."""
+        begun = store.learning.begin(spec, made, at, borrowing=lent)
+        store.transfers.save_mask(begun.id, mask)
+        return begun
+
+    return begin
 
 
 def learn_all(

@@ -18,6 +18,7 @@ from affcli.core.transfer import MOST_LENDERS, Borrowed, Borrowing, Transfer
 from affcli.core.world import ShowsTools
 from affcli.errors import BadInputError, UsageError, one_line
 from affcli.exploration.borrowing import Lender, borrow
+from affcli.lab.believing import TOLD
 from affcli.lab.run_parts import RunParts, world_of
 from affcli.report.captions import Words
 from affcli.report.transferring import LentTable, lent_tables
@@ -126,7 +127,7 @@ def borrowed_from_store(
     What the cameras of these saw is kept from now on.
 
     Raises:
-        UsageError: a lender is not there, not finished, has no rows, or is another robot's; or
+        UsageError: a lender is not there, not finished, has no rows, or is of another kind; or
             nothing carries over. The message says what to do.
         NotSeenError: a camera does not see its tool.
     """
@@ -144,10 +145,11 @@ def borrowed_from_store(
     found = borrowed_by(spec, lenders, mask)
     if not found:
         numbers = ",".join(str(run.id) for run in runs)
-        more = shown(2.0 * max(spec.transfer.borrowing.limit, 0.1))
+        borrowing = spec.transfer.borrowing
+        more = replace(borrowing, limit=min(2.0 * max(borrowing.limit, 0.1), 100.0))
         raise UsageError(
             f"{OPTION} {numbers}: nothing carries over to the {one_line(spec.tool, 40)}; borrow "
-            f"from tools that are more like it, or allow more: {OPTION} {numbers}:limit={more}"
+            f"from tools that are more like it, or allow more: {OPTION} {numbers}:{more}"
         )
     return mask, found
 
@@ -159,6 +161,8 @@ def _lender(store: Store, run: LearningRunInfo, spec: LearningSpec, tell: Tell) 
         raise UsageError(f"{place} is not finished; go on with it first: affcli learn --resume")
     if run.spec.logged:
         raise UsageError(f"{place} comes from a log: no camera saw its {tool}; name another")
+    if run.spec.explorer.name == TOLD:
+        raise UsageError(f"{place} is no robot's: its table was computed; name one that learned")
     other = _difference(run.spec, spec)
     if other:
         raise UsageError(
@@ -198,8 +202,8 @@ def lenders_gone(store: Store, spec: LearningSpec) -> str:
     if not gone:
         return ""
     return (
-        f"the {one_line(spec.tool, 40)}: {gone} of the runs that it borrowed from deleted; it goes "
-        "on with the rows that it has"
+        f"the {one_line(spec.tool, 40)}: {gone} of the runs that it borrowed from "
+        f"{'was' if gone == 1 else 'were'} deleted; it goes on with the rows that it has"
     )
 
 

@@ -219,5 +219,13 @@ def test_a_robot_carries_over_what_it_learned_with_another_tool(tmp_path: Path) 
     assert 0 < run.rows <= 150
     with pytest.raises(affcli.UsageError, match="no learning run 7"):
         lab.learn("mirrored-hook", minutes=0, transfer_from="7")
+    assert lab.learn("mirrored-hook", hours=-0.0, transfer_from="1:each=20") == run
     with pytest.raises(affcli.BadInputError, match="minutes"):
         lab.learn("mirrored-hook", minutes=0)
+    number: Any = 1
+    with pytest.raises(affcli.BadInputError, match="transfer_from = 1: must be a text as '1,2'"):
+        lab.learn("mirrored-hook", minutes=0, transfer_from=number)
+    nowhere = affcli.Laboratory(tmp_path / "none.db")
+    with pytest.raises(affcli.DatabaseError):
+        nowhere.learn("mirrored-hook", minutes=0, transfer_from="1")
+    assert not nowhere.path.exists()

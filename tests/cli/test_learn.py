@@ -1,11 +1,18 @@
 """``affcli learn``: what it says and saves; again, at once, and by many (faults 6, 8)."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from affcli.config import Settings
+from affcli.errors import UsageError
+from affcli.lab.learning import begun
+from affcli.lab.run_parts import RunParts
+from affcli.lab.transferring import transfer_from
 from affcli.simulation.tools.paper import TOOL_PARTS
-from tests.cli.program import Ended, contents, done, executed, rows, side_by_side
+from affcli.store import open_store
+from tests.cli.program import Ended, affcli, contents, done, executed, rows, side_by_side
 
 SHORT = ("learn", "--tool", "stick", "--behaviors", "60")
 
@@ -169,3 +176,37 @@ def test_several_grasps_are_one_run_and_those_that_cannot_be_leave_nothing(tmp_p
     assert (ended.code, len(ended.err.splitlines())) == (4, 1)
     assert "inventing: invents with one grasp; give one --binding" in ended.err
     assert contents(database) == before
+
+
+def test_what_borrows_is_begun_with_all_its_tools_or_with_none(tmp_path: Path) -> None:
+    """And no time is one time, however it is written."""
+    database = tmp_path / "my.db"
+    done("learn", "--tool", "t-hook", "--minutes", "8", "--db", database)
+    borrow = ("learn", "--transfer-from", "1:radius=8,limit=1,shifts=0", "--db", database)
+    both = affcli(*borrow, "--tool", "t-hook", "--tool", "fork", "--minutes", "0")
+    assert both.code == UsageError.exit_code
+    assert both.err.splitlines()[-1].endswith("--transfer-from 1:radius=8,limit=2,shifts=0")
+    assert rows(database, "SELECT count(*) FROM learning_run") == [(1,)]
+
+    ended = done(*borrow, "--tool", "t-hook", "--hours", "0")
+    assert ended.err.startswith("learned t-hook (run 2, seed 0): 0 min 00 s, 0 behaviors")
+    for alike in ("--minutes=-0", "--minutes=0", "--hours=-0.0"):
+        again = done(*borrow, "--tool", "t-hook", alike)
+        assert again.err.startswith("already learned, nothing to do: t-hook (run 2, seed 0)")
+    for said in ("--minutes=0", "--hours=0"):
+        refused = affcli("learn", "--tool", "fork", said, "--db", database)
+        assert refused.err.startswith(
+            f"affcli: {said[:-2]} 0.0: must be more than 0, but for what "
+        )
+
+
+def test_a_run_that_borrows_goes_on_and_says_no_more_than_it_must(tmp_path: Path) -> None:
+    database = tmp_path / "my.db"
+    done("learn", "--tool", "t-hook", "--minutes", "8", "--db", database)
+    parts = RunParts.chosen(Settings())
+    with open_store(database, create=False, write=True) as store:
+        spec = parts.spec("l-hook", 0, 0, None, 3)
+        begun(store, replace(spec, transfer=transfer_from(store, "1")), lambda: "now")
+    ended = done("learn", "--resume", "--db", database)
+    (line,) = ended.err.splitlines()
+    assert line.startswith("learned l-hook (run 2, seed 0): ")

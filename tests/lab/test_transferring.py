@@ -18,6 +18,7 @@ from affcli.core.mask import Mask
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import LearningSpec
 from affcli.errors import AffcliError, BadInputError, NotSeenError, UsageError
+from affcli.lab.believing import TOLD
 from affcli.lab.breaking import break_tool
 from affcli.lab.conducting import begin, run
 from affcli.lab.definition import experiment_of
@@ -104,8 +105,8 @@ def test_with_minutes_it_babbles_too_and_a_kill_changes_nothing(store: Store) ->
     assert lenders_gone(store, spec) == ""
     store.runs.delete(2)
     assert lenders_gone(store, spec) == (
-        f"the {NEW}: 1 of the runs that it borrowed from deleted; it goes on with the rows that it "
-        "has"
+        f"the {NEW}: 1 of the runs that it borrowed from was deleted; it goes on with the rows "
+        "that it has"
     )
     (again,) = interrupted(store)
     assert again == spec
@@ -174,7 +175,11 @@ def test_the_camera_tells_each_tool_from_all_else(name: str) -> None:
         ("1:way=near", BadInputError, "way = near must be one of local, whole"),
         ("3", UsageError, "--transfer-from: run 3 is not finished; go on with it first"),
         ("4", UsageError, "run 4 made no rows of its own with the stick; name another"),
-        ("1:radius=20,limit=0", UsageError, "--transfer-from 1: nothing carries over to the fork;"),
+        (
+            "1:radius=20,limit=0,each=9",
+            UsageError,
+            "or allow more: --transfer-from 1:radius=20,limit=0.2,each=9",
+        ),
     ],
 )
 @pytest.mark.usefixtures("lenders")
@@ -189,6 +194,16 @@ def test_what_cannot_be_borrowed_is_refused_in_one_line(
         learn(store, new_tool(store, text, tool="fork"), now)
     assert "\n" not in str(told.value)
     assert run_sql(store.path, "select count(*) from learning_run").rows == before
+
+
+def test_a_table_that_was_told_lends_nothing(store: Store) -> None:
+    """What a baseline is told, no robot may know."""
+    spec = PARTS.spec("t-hook", 3, 0, None, 1)
+    spec = replace(spec, explorer=Component.of(TOLD, {"friction": 0, "spacing": 2}))
+    told = store.learning.begin(spec, {}, now())
+    assert store.learning.append(told.id, 0, (), None, 0.0, done=True, now=now())
+    with pytest.raises(UsageError, match="run 1 is no robot's: its table was computed; name one"):
+        learn(store, new_tool(store, "1"), now)
 
 
 @pytest.mark.parametrize(
@@ -274,6 +289,15 @@ def test_the_robots_of_a_condition_borrow_from_what_each_learned(two_lives: Path
         trial = store.trials.trials(session_id=2)[0]
         assert replay_trial(store, trial.id).differences == ()
     assert not any(found.wrong for found in check(two_lives))
+
+
+def test_no_time_is_one_time_however_it_is_written() -> None:
+    """And so it is one experiment."""
+    keys = {
+        experiment_of(tomllib.loads(LIFE.replace("minutes = 0", said)), "a test").key
+        for said in ("minutes = 0", "minutes = -0.0", "hours = 0.0")
+    }
+    assert len(keys) == 1
 
 
 def test_robots_that_borrowed_are_brought_together_whole(two_lives: Path, tmp_path: Path) -> None:
