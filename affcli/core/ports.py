@@ -5,7 +5,7 @@ Each contract says what is asked, when, how often, and what holds after a failur
 """
 
 from collections.abc import Mapping
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Protocol, TypeGuard, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,6 +79,13 @@ class Sliding(Protocol):
         """Tell for each wrist position (n,), (n,) (in, table frame), at an angle (rad), whether the
         arm can hold the tool on the table there; a slide ends where it cannot.
         """
+
+
+def can_slide(robot: object) -> TypeGuard[Sliding]:
+    """Tell whether a robot knows where it can slide; asked of what stands before one of another
+    package too, which `isinstance` does not from Python 3.12 on.
+    """
+    return callable(getattr(robot, "slides", None))
 
 
 class Sensor(Protocol):

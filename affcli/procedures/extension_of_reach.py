@@ -8,7 +8,7 @@ from affcli.core.behavior import BehaviorCall
 from affcli.core.choice import Reason, Situation
 from affcli.core.goal import Goal
 from affcli.core.observation import Observation
-from affcli.core.ports import Experimenter, Planner, Robot, Sensor, Sliding
+from affcli.core.ports import Experimenter, Planner, Robot, Sensor, can_slide
 from affcli.core.setting import setting
 from affcli.core.trial import Outcome, StepRecord, TrialEnd
 from affcli.errors import PartFailedError, SimulationDivergedError
@@ -91,7 +91,7 @@ def _step(
     planner: Planner,
 ) -> StepRecord | TrialEnd:
     """Choose a row, try it, judge it, count it; or end the trial when no row is left."""
-    slides = robot.slides if isinstance(robot, Sliding) else None
+    slides = robot.slides if can_slide(robot) else None
     situation = Situation(table, seen, goal, robot.wrist, robot.reaches, robot.holding, slides)
     choice = planner.choose(situation)
     if choice.position is None:

@@ -12,9 +12,12 @@ from affcli import registry
 from affcli.config import Settings
 from affcli.core.identity import Component
 from affcli.core.part import Kind
+from affcli.core.ports import can_slide
+from affcli.core.world import shows_tools
 from affcli.errors import BadInputError, UsageError
 from affcli.lab.learning_run import LearningRun
 from affcli.lab.run_parts import RunParts
+from affcli.lab.transferring import mask_of
 from affcli.plugins import parts
 from tests.cli.program import contents, done, environment, refused, rows
 from tests.plugins.conftest import SHOP, Install
@@ -68,6 +71,20 @@ def test_parts_of_a_package_are_learned_with_used_and_done_again(tmp_path: Path)
         tmp_path / "own.db", "SELECT sensor FROM learning_run UNION SELECT sensor FROM trial"
     )
     assert seen == [(f"blurry@{PACKAGE}:noise=0.02",)]
+
+
+@pytest.mark.usefixtures("shop")
+def test_what_a_world_of_a_package_can_do_beyond_the_least_is_found() -> None:
+    """Its robot slides, its camera shows tools; its setting does neither."""
+    ours, theirs = (
+        RunParts.chosen(Settings(), world=world).spec("stick", 0, 0, 1.0)
+        for world in ("table", "yard")
+    )
+    setting = LearningRun(theirs).setting
+    assert can_slide(setting.robot)
+    assert mask_of(theirs) == mask_of(ours)
+    assert not shows_tools(setting)
+    assert not can_slide(setting)
 
 
 @pytest.mark.usefixtures("shop")
