@@ -233,7 +233,8 @@ def estimate(
 
 def _made_with(condition: Condition) -> dict[str, str]:
     """Return the versions that decide the numbers of a condition."""
-    return versions(condition.world, condition.parts.sensor)
+    masks = condition.transferring is not None
+    return versions(condition.world, condition.parts.sensor, masks=masks)
 
 
 def _packed_life(experiment: Experiment, keep: Keep, robot: int) -> PackedRobot:

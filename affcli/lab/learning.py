@@ -141,7 +141,7 @@ def _beginning(
     from affcli.lab.versions import versions
 
     run = LearningRun(spec) if info is None else gone_on_with(info)
-    made = versions(run.world, spec.sensor)
+    made = versions(run.world, spec.sensor, masks=spec.transfer is not None)
     if spec.transfer is None or info is not None:
         return lambda at: store.learning.begin(spec, made, at)
     mask, lent = borrowed_from_store(store, spec, tell)
