@@ -37,6 +37,7 @@ from affcli.report.replaying import (
     differences_json,
     opening_frame,
     replay_json,
+    run_verdict,
     trial_frames,
     verdict,
 )
@@ -216,9 +217,12 @@ def _replay_run(
         with progress(f"run {run}", last) as bar:
             for behavior in noted():
                 bar(behavior.record.step, f"behavior {behavior.record.step}")
+    borrowed, wrong = lab.replaying.replay_borrowing(store, info)
+    differences = [*wrong, *differences]
     if as_json:
-        show_json([{"run": run, "behaviors": done, **differences_json(differences)}])
-    say(f"run {run}: {verdict(done, differences, 'behavior', info.behaviors)}")
+        counts = {"run": run, "borrowed": borrowed, "behaviors": done}
+        show_json([{**counts, **differences_json(differences)}])
+    say(f"run {run}: {run_verdict(done, differences, info.behaviors, borrowed)}")
     return 1 if differences else 0
 
 

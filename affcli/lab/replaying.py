@@ -13,7 +13,7 @@ from affcli.core.goal import Goal
 from affcli.core.observation import Observation
 from affcli.core.ports import Planner
 from affcli.core.records import LearningRunInfo
-from affcli.core.replay import Considered, Replay, ReplayedBehavior, ReplayedStep
+from affcli.core.replay import Considered, Difference, Replay, ReplayedBehavior, ReplayedStep
 from affcli.core.scene import Scene
 from affcli.core.specs import Counters
 from affcli.core.trial import TrialStep
@@ -23,6 +23,7 @@ from affcli.lab.believing import TOLD
 from affcli.lab.filming import FRAME_RATE, Reel
 from affcli.lab.learning_run import LearningRun
 from affcli.lab.run_parts import require_shape, require_world_version, settings_of, world_of
+from affcli.lab.transferring import borrowed_again
 from affcli.lab.trials import WithEnd, run_trial
 from affcli.store import Store
 
@@ -186,6 +187,24 @@ def replay_run(
         scenes = reel.cut() or (_scene(setting),)
         if record.step >= first or differences:
             yield ReplayedBehavior(record, truth, scenes, differences)
+
+
+def replay_borrowing(
+    store: Store, run: LearningRunInfo
+) -> tuple[int | None, tuple[Difference, ...]]:
+    """Borrow again what a stored run borrowed, from the lenders as the store has them.
+
+    Returns:
+        How many rows; None where that cannot be told, for a lender is not there any more. And where
+        they differ from their record.
+
+    Raises:
+        UsageError: see `borrowed_again`.
+    """
+    again = borrowed_again(store, run)
+    if again is None:
+        return None, ()
+    return len(again), store.transfers.differences(run.id, run.spec.tool, again)
 
 
 def film_length(replay: Replay, numbers: Sequence[int], speed: float) -> int:

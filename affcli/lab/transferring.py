@@ -15,7 +15,7 @@ from affcli.core.records import LearningRunInfo, StoredRow
 from affcli.core.setting import Value
 from affcli.core.specs import LearningSpec
 from affcli.core.transfer import MOST_LENDERS, Borrowed, Borrowing, Transfer
-from affcli.core.world import ShowsTools
+from affcli.core.world import shows_tools
 from affcli.errors import BadInputError, UsageError, one_line
 from affcli.exploration.borrowing import Lender, borrow
 from affcli.lab.believing import TOLD
@@ -40,7 +40,7 @@ def mask_of(spec: LearningSpec) -> Mask:
         NotSeenError: the camera does not see the tool.
     """
     world = world_of(spec)
-    if not isinstance(world, ShowsTools):
+    if not shows_tools(world):
         raise UsageError(f"the world {world.name} shows no tool's shape: nothing can be borrowed")
     return world.mask(spec)
 
@@ -152,6 +152,26 @@ def borrowed_from_store(
             f"from tools that are more like it, or allow more: {OPTION} {numbers}:{more}"
         )
     return mask, found
+
+
+def borrowed_again(store: Store, run: LearningRunInfo) -> tuple[Borrowed, ...] | None:
+    """Return what a stored run borrows when it does so again; None where a lender is not there.
+
+    Raises:
+        UsageError: the rows of a lender were not kept, or the camera's packages are missing.
+    """
+    if run.spec.transfer is None:
+        return ()
+    keys = run.spec.transfer.lenders
+    there = map(store.learning.run, store.transfers.lenders(keys).values())
+    lenders = [
+        lender_of(
+            one.spec, [stored.row for stored in store.learning.rows(one.id)], mask_of(one.spec)
+        )
+        for one in there
+        if one.status == "done"
+    ]
+    return borrowed_by(run.spec, lenders, mask_of(run.spec)) if len(lenders) == len(keys) else None
 
 
 def _lender(store: Store, run: LearningRunInfo, spec: LearningSpec, tell: Tell) -> Lender:

@@ -1,6 +1,6 @@
 """A replay on the terminal, one frame a moment; and as JSON types."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from textwrap import fill
@@ -189,12 +189,51 @@ def verdict(
         noun: what they are.
         of: how many the record holds; None for `count`.
     """
-    if not differences:
-        which = "all" if of in {None, count} else "the first"
-        known = {0: f"no {noun}s", 1: f"{'its' if which == 'all' else which} one {noun}"}
-        return f"the replay equals the record, {known.get(count, f'{which} {count} {noun}s')}"
+    if differences:
+        return _differing_in(
+            differences, lambda number: f"{noun} {number}" if number else "the end"
+        )
+    return f"the replay equals the record, {_counted(count, noun, of)}"
+
+
+def run_verdict(
+    count: int, differences: Sequence[Difference], of: int, borrowed: int | None = 0
+) -> str:
+    """Return in words whether a learning run, done again, equals its record.
+
+    Args:
+        count: how many behaviors were done.
+        differences: what came out otherwise, borrowed rows by their steps, which are 0 or less.
+        of: how many behaviors the record holds.
+        borrowed: how many rows were borrowed again; None where that could not be.
+    """
+    unchecked = (
+        ""
+        if borrowed is not None
+        else ("; what it borrowed was not checked, for a run that lent it is not there any more")
+    )
+    if differences:
+        return _differing_in(differences, _of_a_run) + unchecked
+    rows = f"{_counted(borrowed, 'borrowed row', None)}, " if borrowed else ""
+    return f"the replay equals the record, {rows}{_counted(count, 'behavior', of)}{unchecked}"
+
+
+def _of_a_run(number: int) -> str:
+    """Return what has a number in a learning run."""
+    return f"behavior {number}" if number > 0 else f"borrowed row {number}"
+
+
+def _counted(count: int, noun: str, of: int | None) -> str:
+    """Return in words how many were done of how many; None for all."""
+    which = "all" if of in {None, count} else "the first"
+    known = {0: f"no {noun}s", 1: f"{'its' if which == 'all' else which} one {noun}"}
+    return known.get(count, f"{which} {count} {noun}s")
+
+
+def _differing_in(differences: Sequence[Difference], named: Callable[[int], str]) -> str:
+    """Return in words where a replay differs; `named` says what has a number."""
     shown = [
-        f"{f'{noun} {number}' if number else 'the end'} ({_at_most(map(_differing, some), 3)})"
+        f"{named(number)} ({_at_most(map(_differing, some), 3)})"
         for number, some in groupby(differences, key=lambda d: d.number)
     ]
     return f"the replay DIFFERS from the record in {_at_most(shown, MOST_DIFFERENCES)}"

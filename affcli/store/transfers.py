@@ -7,9 +7,13 @@ import sqlalchemy as sa
 
 from affcli.core.geometry import Point
 from affcli.core.mask import Mask
+from affcli.core.replay import Difference
 from affcli.core.transfer import Borrowed
 from affcli.store import reading, rows
+from affcli.store.comparing import by_number, differences
 from affcli.store.connection import Database, insert_many
+from affcli.store.keeping import require_kept
+from affcli.store.learning import COUNTERS
 from affcli.store.reading import reading_what_was_written
 from affcli.store.tables import affordance, borrowed, learning_run, mask
 
@@ -71,6 +75,36 @@ class Transfers:
                 )
                 for row in self.database.mappings(wanted)
             )
+
+    def differences(
+        self, run_id: int, tool: str, again: Sequence[Borrowed]
+    ) -> tuple[Difference, ...]:
+        """Return where rows that were borrowed again differ from their record, but for the
+        counters, which trials change.
+
+        Args:
+            run_id: the record.
+            tool: the name of the tool held.
+            again: all that was borrowed.
+        """
+        require_kept(self.database, "rows", learning_run.c.id == run_id)
+        kept, kept_whence = (
+            by_number(
+                self.database.mappings(
+                    sa.select(table).filter_by(learning_run_id=run_id).where(table.c.step <= 0)
+                ),
+                "step",
+            )
+            for table in (affordance, borrowed)
+        )
+        made = {one.row.step: rows.affordance_row(run_id, tool, one.row) for one in again}
+        whence = {one.row.step: rows.borrowed_row(run_id, one) for one in again}
+        found = differences("affordance", kept, made)
+        missing = kept.keys() ^ made.keys()  # is told once
+        return (
+            *(d for d in found if d.column not in COUNTERS),
+            *(d for d in differences("borrowed", kept_whence, whence) if d.number not in missing),
+        )
 
     def lenders(self, keys: Sequence[str]) -> dict[str, int]:
         """Return the number of the run of each key; of several the one that stands for itself. What

@@ -138,7 +138,8 @@ def test_a_learning_run_is_what_its_record_says(reproduced: Path) -> None:
     says = f"run 7: the replay equals the record, all {count} behaviors\n"
     assert done("replay", "--run", "7", "--db", reproduced) == Ended(0, "", says)
     ended = done("replay", "--run", "7", "--json", "--db", reproduced)
-    assert ended.result == {"run": 7, "behaviors": count, "equal": True, "differences": []}
+    counts = {"run": 7, "borrowed": 0, "behaviors": count}
+    assert ended.result == {**counts, "equal": True, "differences": []}
 
 
 def test_behaviors_of_a_run_are_shown_alone(learned: Path) -> None:
@@ -310,3 +311,44 @@ def test_stopped_away_from_a_terminal_it_is_one_line(
         wait_until(partial(handles_signals, process.pid), process)
         time.sleep(0.5)
         assert stopped(process, signum) in {Ended(code, "", says), Ended(0, "", WHOLE_RUN)}
+
+
+def test_a_run_that_borrowed_borrows_again_where_the_lenders_are(tmp_path: Path) -> None:
+    """Its counters may have changed since: trials use what was borrowed."""
+    database = tmp_path / "my.db"
+    done("learn", "--tool", "t-hook", "--minutes", "8", "--db", database)
+    borrow = ("--transfer-from", "1:each=20", "--minutes", "0")
+    done("learn", "--tool", "fork", *borrow, "--db", database)
+    ((count,),) = rows(database, "SELECT rows FROM learning_run WHERE id = 2")
+    says = f"run 2: the replay equals the record, all {count} borrowed rows, no behaviors\n"
+    tamper(database, "UPDATE affordance SET times_used = 3 WHERE learning_run_id = 2")
+    assert done("replay", "--run", "2", "--db", database) == Ended(0, "", says)
+
+    tamper(database, "UPDATE affordance SET end_object_x = 9 WHERE step = -1")
+    tamper(database, "UPDATE borrowed SET lender_step = lender_step + 1 WHERE step = 0")
+    ended = affcli("replay", "--run", "2", "--json", "--db", database)
+    assert ended.code == 1
+    found = [(d["number"], d["column"]) for d in ended.result["differences"]]
+    assert found == [(-1, "end_object_x"), (0, "lender_step")]
+    assert ended.err == (
+        "run 2: the replay DIFFERS from the record in borrowed row -1 (end_object_x), borrowed row "
+        "0 (lender_step)\n"
+    )
+    tamper(database, "DELETE FROM borrowed WHERE step = 0")
+    tamper(database, "DELETE FROM affordance WHERE learning_run_id = 2 AND step = 0")
+    ended = affcli("replay", "--run", "2", "--db", database)
+    assert ended.err.endswith("borrowed row 0 (not in the record)\n")
+
+    done("runs", "delete", "1", "--yes", "--db", database)
+    ended = done("replay", "--run", "2", "--json", "--db", database)
+    assert ended.result == {
+        "run": 2,
+        "borrowed": None,
+        "behaviors": 0,
+        "equal": True,
+        "differences": [],
+    }
+    assert ended.err == (
+        "run 2: the replay equals the record, no behaviors; what it borrowed was not checked, for "
+        "a run that lent it is not there any more\n"
+    )

@@ -2,6 +2,7 @@
 refused (§8).
 """
 
+import json
 import re
 import tomllib
 from collections.abc import Sequence
@@ -41,6 +42,12 @@ def new_tool(store: Store, text: str, minutes: float = 0.0, tool: str = NEW) -> 
     return replace(spec, transfer=transfer_from(store, text))
 
 
+def made_with_a_camera(store: Store, sql: str) -> list[bool]:
+    """Return whether versions that are stored name the packages by which a camera sees."""
+    versions = (json.loads(str(versions)).keys() for (versions,) in run_sql(store.path, sql).rows)
+    return [{"opencv-python-headless", "scipy"} <= one for one in versions]
+
+
 @pytest.fixture
 def lenders(store: Store) -> tuple[LearningRunInfo, ...]:
     """Runs 1 and 2, with two of the paper's tools."""
@@ -74,6 +81,7 @@ def test_a_run_of_no_time_holds_what_it_borrowed_and_nothing_else(store: Store) 
             assert abs(new.expected_movement.dx) == pytest.approx(abs(old.expected_movement.dx))
             assert new.expected_movement.dy == pytest.approx(old.expected_movement.dy)
     assert whence(store, rows[min(rows)]) is None
+    assert made_with_a_camera(store, "select versions from learning_run") == [False, False, True]
     assert not any(found.wrong for found in check(store.path))
 
 
@@ -286,6 +294,8 @@ def test_the_robots_of_a_condition_borrow_from_what_each_learned(two_lives: Path
                 assert all(store.transfers.mask(number) is not None for number in seen)
         learned = "select tool, count(*) from learning_run where transfer is null group by tool"
         assert run_sql(two_lives, learned).rows == (("fork", 2), ("l-stick", 2), ("t-hook", 2))
+        used = made_with_a_camera(store, "select versions from session order by id")
+        assert used == [False, True, True]
         trial = store.trials.trials(session_id=2)[0]
         assert replay_trial(store, trial.id).differences == ()
     assert not any(found.wrong for found in check(two_lives))
