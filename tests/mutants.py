@@ -46,6 +46,9 @@ MEMORY = 8 << 30
 """Bytes of address space: a mutant may ask for any number."""
 FIRST = 3
 """So many files of tests run before the others are even imported: they find most."""
+PATIENCE = 20
+"""A test may wait so many times longer than it may work."""
+LATE = (-signal.SIGPROF, -signal.SIGALRM)
 FEW, MANY = 20, 100
 """Examples of a property: to see what it executes, and to find a mutant."""
 
@@ -99,6 +102,15 @@ def file_of(test: str) -> str:
     return test.partition("::")[0]
 
 
+def limit(seconds: float) -> None:
+    """End this process when it has worked for so long, or waited for much longer; 0 for never.
+
+    It counts its own work: on a machine that does other things, too, a test is as late as alone.
+    """
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    signal.setitimer(signal.ITIMER_REAL, PATIENCE * seconds)
+
+
 class Plugin:
     """Pytest runs the tests in our order, each within its time; it records what each executes."""
 
@@ -118,11 +130,11 @@ class Plugin:
         if self.measured:
             self.measured.switch_context(item.nodeid)
         else:
-            signal.setitimer(signal.ITIMER_REAL, 10 + 10 * self.known.seconds.get(item.nodeid, 6))
-        began = time.monotonic()
+            limit(10 + 10 * self.known.seconds.get(item.nodeid, 6))
+        began = time.process_time()
         result = yield
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        self.seconds[item.nodeid] = time.monotonic() - began
+        limit(0)
+        self.seconds[item.nodeid] = time.process_time() - began
         return result
 
 
@@ -215,7 +227,7 @@ def attack(mutant: Mutant, known: Known) -> int:
     order = known.order(mutant)
     files = list(dict.fromkeys(map(file_of, order)))
     for some in (files[:FIRST], files[FIRST:]):
-        signal.setitimer(signal.ITIMER_REAL, 120)  # until the first test: importing may not end
+        limit(120)  # until the first test: importing may not end
         code = pytest_with(some, Plugin(order, known, None), MANY) if some else 0
         if code:
             return code
@@ -301,7 +313,7 @@ def report(chosen: list[Mutant], known: Known, folder: Path) -> int:
     ends: Counter[tuple[str, str]] = Counter()
     for number, code in forked([partial(attack, one, known) for one in chosen], folder):
         mutant = chosen[number]
-        end = {0: "survived", -signal.SIGALRM: "timed out"}.get(code, "found")
+        end = {0: "survived", **dict.fromkeys(LATE, "timed out")}.get(code, "found")
         ends[mutant.path.split("/")[1], end] += 1
         if end == "survived":
             tests = len(known.order(mutant))

@@ -18,6 +18,9 @@ REST_SPEED = 1e-6
 """The puck rests when it moves slower than this (in/s) and the tool has stopped."""
 REST_SECONDS = 1.0
 """Friction stops a puck pushed at 5 in/s within 0.04 s; after a second something is wrong."""
+NOTHING = 1e-150
+"""Nearer to 0 no place or angle is told (in, rad). The engine squares impulses to forget them, and
+those below 1e-162 have no square: what they leave would depend on the pushes before."""
 CONTACT_MARGIN = 0.02
 """Start this far before contact (in): two steps at full speed."""
 
@@ -227,7 +230,12 @@ def in_equal_steps(course: Course, motion: tuple[Stretch, ...], finer: int) -> N
 
 def _where(bodies: PuckAndTool, before: Pose) -> Pose:
     """Return where the puck lies now; SimulationDivergedError when that is nowhere."""
-    pose = bodies.puck_pose()
+    pose = Pose(
+        *(
+            0.0 if abs(part) < NOTHING and part != was else part
+            for part, was in zip(bodies.puck_pose(), before, strict=True)
+        )
+    )
     if not all(map(math.isfinite, pose)):
         raise SimulationDivergedError(
             f"the push of the puck from ({before.x:.3f}, {before.y:.3f}) gave {pose}; the behavior "

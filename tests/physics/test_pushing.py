@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from affcli.core.geometry import ConvexPolygon, Point, Pose
 from affcli.simulation.physics_settings import PhysicsSettings
+from affcli.simulation.puck_and_tool import PuckAndTool
 from affcli.simulation.pushing import PushSimulator
 from tests.physics.pushes import (
     DIRECTIONS,
@@ -153,6 +154,19 @@ def test_skipping_the_steps_before_contact_changes_no_bit(
 ) -> None:
     case = draw_case(np.random.default_rng(seed), shape, direction, 5.0, gap)
     assert push(case, used[shape]) == push(case, used[shape], whole=True)
+
+
+def test_what_fades_in_the_engine_beyond_counting_leaves_no_angle(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The engine forgets impulses by squaring them: of some 1e-165 something is left."""
+    told = PuckAndTool.puck_pose
+    case = draw_case(np.random.default_rng(0), "t-hook", DIRECTIONS[0])
+    moved = push(case, simulator("t-hook"))
+    assert moved != case.puck
+    monkeypatch.setattr(PuckAndTool, "puck_pose", lambda self: told(self)._replace(angle=7e-321))
+    left = push(case, simulator("t-hook"))
+    assert (left.x, left.y, left.angle) == (moved.x, moved.y, 0.0)
 
 
 @given(shape=shapes, direction=directions, seed=seeds, history=st.lists(seeds, max_size=3))
