@@ -24,7 +24,7 @@ MOST_CELLS = 1_000_000
 class Mask:
     """Which cells about the wrist a tool covers, the wrist's angle 0.
 
-    The cell of column i and row j is the square from (i, j) to (i + 1, j + 1) times the scale, in
+    The cell of column i and row j is the square from (i, j) to (i + 1, j + 1) times `SCALE`, in
     the wrist frame: x to the right, y straight ahead.
 
     Args:
@@ -32,7 +32,6 @@ class Mask:
         columns, rows: how many cells are kept.
         cells: whether each is covered, packed into bits, column after column.
         color: of the tool, as seen.
-        scale: side of a cell (in).
     """
 
     column: int
@@ -41,17 +40,15 @@ class Mask:
     rows: int
     cells: bytes
     color: Color
-    scale: float = SCALE
 
     @classmethod
-    def of(cls, grid: Grid, column: int, row: int, color: Color, scale: float = SCALE) -> "Mask":
+    def of(cls, grid: Grid, column: int, row: int, color: Color) -> "Mask":
         """Return the mask of a grid, without the empty cells around it.
 
         Args:
             grid: which cells are covered.
             column, row: of its first cell.
             color: of the tool.
-            scale: side of a cell (in).
 
         Raises:
             ValueError: none is covered.
@@ -68,13 +65,12 @@ class Mask:
             rows=kept.shape[1],
             cells=np.packbits(kept).tobytes(),
             color=color,
-            scale=scale,
         )
 
     def __post_init__(self) -> None:
         count = self.columns * self.rows
         fits = self.columns > 0 and self.rows > 0 and count <= MOST_CELLS
-        if not (fits and len(self.cells) == -(-count // 8) and self.scale > 0.0):
+        if not (fits and len(self.cells) == -(-count // 8)):
             raise ValueError(f"a mask of {self.columns} by {self.rows} cells")
 
     @cached_property
@@ -84,11 +80,6 @@ class Mask:
         found = bits.astype(bool).reshape(self.columns, self.rows)
         found.flags.writeable = False
         return found
-
-    @property
-    def area(self) -> float:
-        """How much is covered (in^2)."""
-        return float(self.grid.sum()) * self.scale**2
 
     def window(self, column: int, row: int, columns: int, rows: int) -> Grid:
         """Return the cells (columns, rows) of a rectangle, wherever it lies."""
@@ -104,13 +95,11 @@ class Mask:
 
     def mirrored(self) -> "Mask":
         """Return it with left and right exchanged."""
-        return Mask.of(
-            self.grid[::-1], -(self.column + self.columns), self.row, self.color, self.scale
-        )
+        return Mask.of(self.grid[::-1], -(self.column + self.columns), self.row, self.color)
 
     def grown(self, by: float) -> "Mask":
         """Return it as if the tool were so much larger on all sides (in): a mask that is wrong."""
-        reach = round(by / self.scale)
+        reach = round(by / SCALE)
         if not reach:
             return self
         wide = self.window(
@@ -122,7 +111,7 @@ class Mask:
             for j in range(-reach, reach + 1):
                 if i * i + j * j <= reach * reach:
                     found |= np.roll(wide, (i, j), (0, 1))
-        return Mask.of(found, self.column - reach, self.row - reach, self.color, self.scale)
+        return Mask.of(found, self.column - reach, self.row - reach, self.color)
 
     def overlap(self, other: "Mask") -> float:
         """Return how much of what either covers both do: 1 for equal masks, 0 for apart."""

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from affcli.core.affordance import Affordance
 from affcli.core.behavior import BehaviorCall, Repertoire, motion_of
 from affcli.core.geometry import Point
-from affcli.core.mask import Grid, Mask
+from affcli.core.mask import SCALE, Grid, Mask
 from affcli.core.motion import Motion, Slide, Turn, turned_by
 from affcli.core.observation import Observation
 from affcli.core.transfer import WHOLE, Borrowed, Borrowing
@@ -125,12 +125,12 @@ class Shapes:
 
     def _shifts(self, old: Mask, way: "Way", rng: np.random.Generator) -> list[Point]:
         """Return at which other places the new tool looks as the old one does along a way."""
-        scale, limit = self._mask.scale, self._borrowing.limit
-        column, row, swept = sweep(way, self._borrowing.radius, scale)
+        limit = self._borrowing.limit
+        column, row, swept = sweep(way, self._borrowing.radius)
         covered = old.window(column, row, *swept.shape) & swept
-        if covered.sum() * scale**2 <= limit:
+        if covered.sum() * SCALE**2 <= limit:
             return []  # nothing of the tool is there: it would look alike beside any tool
-        most = math.floor(limit / scale**2 + 1e-9)
+        most = math.floor(limit / SCALE**2 + 1e-9)
         there = self._mask.window(column, row, *swept.shape)
         if ((there ^ covered) & swept).sum() <= most:
             return [Point(0.0, 0.0)]
@@ -140,7 +140,7 @@ class Shapes:
         places = np.argwhere(differing <= most)
         chosen = rng.permutation(len(places))[: self._borrowing.shifts]
         return [
-            Point(float(left + i - column) * scale, float(near + j - row) * scale)
+            Point(float(left + i - column) * SCALE, float(near + j - row) * SCALE)
             for i, j in places[chosen]
         ]
 
@@ -208,13 +208,12 @@ def turned_point(point: Point, angle: float) -> Point:
     return Point(cos * point.x - sin * point.y, sin * point.x + cos * point.y)
 
 
-def sweep(way: Way, radius: float, scale: float) -> tuple[int, int, Grid]:
+def sweep(way: Way, radius: float) -> tuple[int, int, Grid]:
     """Return the cells that a disc sweeps along a way.
 
     Args:
         way: of its middle.
         radius: of the disc (in).
-        scale: side of a cell (in).
 
     Returns:
         Column and row of the first cell, and which cells from there on (columns, rows).
@@ -222,9 +221,9 @@ def sweep(way: Way, radius: float, scale: float) -> tuple[int, int, Grid]:
     (x0, y0), (x1, y1) = way
     left, right = min(x0, x1) - radius, max(x0, x1) + radius
     near, far = min(y0, y1) - radius, max(y0, y1) + radius
-    column, row = math.floor(left / scale), math.floor(near / scale)
-    x = scale * (np.arange(column, math.ceil(right / scale)) + 0.5)[:, None] - x0
-    y = scale * (np.arange(row, math.ceil(far / scale)) + 0.5)[None, :] - y0
+    column, row = math.floor(left / SCALE), math.floor(near / SCALE)
+    x = SCALE * (np.arange(column, math.ceil(right / SCALE)) + 0.5)[:, None] - x0
+    y = SCALE * (np.arange(row, math.ceil(far / SCALE)) + 0.5)[None, :] - y0
     dx, dy = x1 - x0, y1 - y0
     squared = dx * dx + dy * dy
     share = np.clip((x * dx + y * dy) / squared, 0.0, 1.0) if squared > 1e-12 else 0.0 * (x + y)

@@ -21,7 +21,7 @@ from affcli.core.geometry import Point, Pose
 from affcli.core.identity import Component
 from affcli.core.limits import LONGEST_HOURS, MOST_BEHAVIORS, MOST_ROBOTS
 from affcli.core.log import NOT_LOGGED, LoggedTry
-from affcli.core.mask import Mask
+from affcli.core.mask import SCALE, Mask
 from affcli.core.observation import Movement, Observation, SensorKind
 from affcli.core.records import (
     ExperimentInfo,
@@ -105,7 +105,9 @@ def transfer(text: str) -> Transfer:
 
 
 def mask(row: Columns) -> Mask:
-    """Return what a camera saw of a tool."""
+    """Return what a camera saw of a tool; ValueError where its cells are of another size."""
+    if row["scale"] != SCALE:
+        raise ValueError(row["scale"])
     return Mask(
         column=row["first_column"],
         row=row["first_row"],
@@ -113,7 +115,6 @@ def mask(row: Columns) -> Mask:
         rows=row["rows"],
         cells=bytes.fromhex(row["cells"]),
         color=(row["red"], row["green"], row["blue"]),
-        scale=row["scale"],
     )
 
 

@@ -10,7 +10,7 @@ from affcli.core.behavior import BehaviorCall, repertoire_json
 from affcli.core.choice import Reasons
 from affcli.core.geometry import direction_degrees
 from affcli.core.identity import canonical_json
-from affcli.core.mask import Mask
+from affcli.core.mask import SCALE, Mask
 from affcli.core.specs import LearningSpec, SessionSpec, TrialSpec, VerificationSpec
 from affcli.core.tool import Tool
 from affcli.core.transfer import Borrowed
@@ -127,7 +127,7 @@ def affordance_row(run: int, tool: str, row: Affordance) -> Row:
 def mask_row(run: int, mask: Mask) -> Row:
     """Return the row of what a run's camera saw of its tool."""
     return (
-        *(run, mask.column, mask.row, mask.columns, mask.rows, mask.scale, mask.cells.hex()),
+        *(run, mask.column, mask.row, mask.columns, mask.rows, SCALE, mask.cells.hex()),
         *mask.color,
     )
 

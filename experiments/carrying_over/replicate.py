@@ -14,8 +14,6 @@ from pathlib import Path
 from affcli.lab.verifying import replications, verification_spec
 from affcli.store import open_store
 
-SCRATCH = "an hour from scratch"
-
 
 def main() -> None:
     """Try the rows, print a table, write the counts."""

@@ -179,7 +179,7 @@ def test_nothing_along_the_way_differs_by_more_than_the_limit(
             start=Point(way.start.x - sx, way.start.y - sy),
             end=Point(way.end.x - sx, way.end.y - sy),
         )
-        column, first, swept = sweep(back, borrowing.radius, 0.1)
+        column, first, swept = sweep(back, borrowing.radius)
         i, j = round(sx / 0.1), round(sy / 0.1)
         differ = before.window(column, first, *swept.shape) ^ seen.window(
             column + i, first + j, *swept.shape

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from affcli.core.affordance import Affordance
 from affcli.core.geometry import Point
-from affcli.core.mask import Mask
+from affcli.core.mask import SCALE, Mask
 from affcli.report.figures.arrows import Arrow, Look, draw_arrows
 from affcli.report.figures.canvas import (
     BLUE,
@@ -76,8 +76,8 @@ def transfer_figure(tables: Sequence[LentTable], width: float | None = None) -> 
 
 def _draw_mask(axes: Axes, mask: Mask) -> None:
     """Draw what a camera saw of a tool."""
-    left, near = mask.column * mask.scale, mask.row * mask.scale
-    right, far = left + mask.columns * mask.scale, near + mask.rows * mask.scale
+    left, near = mask.column * SCALE, mask.row * SCALE
+    right, far = left + mask.columns * SCALE, near + mask.rows * SCALE
     covered = np.ma.masked_equal(mask.grid.T.astype(float), 0.0)
     axes.imshow(
         covered,
