@@ -58,6 +58,9 @@ CHECKS = {
         UNION ALL SELECT 'run ' || b.learning_run_id FROM borrowed b JOIN learning_run r
         ON r.id = b.learning_run_id AND r.kept <> 'trials' LEFT JOIN affordance a
         ON a.learning_run_id = b.learning_run_id AND a.step = b.step WHERE a.id IS NULL""",
+    "the mask of a tool has as many cells as it says": """
+        SELECT 'run ' || learning_run_id FROM mask WHERE cells GLOB '*[^0-9a-f]*'
+        OR length(cells) <> 2 * ((columns * rows + 7) / 8)""",
     "an invention was made, and tried again, by behaviors of its run": """
         SELECT 'run ' || i.learning_run_id FROM (SELECT learning_run_id, step FROM invention
         UNION ALL SELECT learning_run_id, step FROM invention_try) i
@@ -102,7 +105,8 @@ CHECKS = {
         OR a.times_successful <> 1 + coalesce(s.successful, 0)""",
     "what a run or a session is a function of can be read": """
         SELECT 'run ' || id FROM learning_run WHERE NOT (json_valid(settings)
-        AND json_valid(repertoire) AND json_valid(binding_params) AND json_valid(versions))
+        AND json_valid(repertoire) AND json_valid(binding_params) AND json_valid(versions)
+        AND json_valid(coalesce(transfer, '{}')))
         UNION ALL SELECT 'session ' || id FROM session WHERE NOT (json_valid(settings)
         AND json_valid(repertoire) AND json_valid(binding_params) AND json_valid(versions))""",
     "a finished run needs nothing to go on": """

@@ -4,11 +4,13 @@ import sqlite3
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from affcli.core.behavior import composed
 from affcli.core.geometry import Point
 from affcli.core.invention import Invention
+from affcli.core.mask import Mask
 from affcli.core.motion import Turn
 from affcli.core.specs import Counters
 from affcli.core.transfer import Borrowed, Borrowing, Transfer
@@ -58,13 +60,15 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
         )
         borrower = replace(run.spec, transfer=Transfer(("0" * 64,), Borrowing()))
         store.learning.begin(borrower, VERSIONS, NOW, borrowing=[lent])
+        mask = Mask.of(np.ones((3, 5), dtype=bool), -1, 2, (255.0, 0.0, 0.0))
+        store.transfers.save_mask(run.id, mask)
         store.inventions.save(run.id, [Invention(turn, 2, 9, ((5, True), (6, True)), kept=True)])
     return path
 
 
 def test_all_is_well_in_a_database_that_was_used(sound: Path) -> None:
     findings = check(sound)
-    assert len(findings) == 21
+    assert len(findings) == 22
     assert [f for f in findings if f.wrong] == []
     assert {f.example for f in findings if f.unfinished} == {"run 2", "session 1 (solve)"}
 
@@ -94,6 +98,9 @@ def test_all_is_well_in_an_empty_one(store: Store) -> None:
         ("update behavior set clock = NULL where step = 2", "only a log leaves out"),
         ("update invention set step = 99", "an invention was made"),
         ("update invention_try set step = 99 where step = 5", "an invention was made"),
+        ("update learning_run set transfer = '{' where id = 2", "can be read"),
+        ("update mask set cells = 'zz'", "the mask of a tool"),
+        ("update mask set rows = rows + 1", "the mask of a tool"),
         ("delete from borrowed", "a borrowed row says where it comes from"),
         ("delete from affordance where step = 0", "a borrowed row says where it comes from"),
         ("update learning_run set world = 'log:content=x'", "says where it comes from"),
