@@ -4,12 +4,12 @@ A borrowed row is a row of its run like any other. Its step is 0 or less: the ro
 by any of its own behaviors, which are counted from 1.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
 from affcli.core.affordance import Affordance
-from affcli.core.geometry import Point
+from affcli.core.geometry import Point, Pose
 from affcli.core.identity import shown
 from affcli.core.setting import Value, setting, settings_of
 from affcli.errors import BadInputError, one_line
@@ -115,6 +115,13 @@ class Transfer:
         if not lenders or list(lenders) != sorted(set(lenders)):
             raise ValueError("lenders in another order")
         return cls(lenders, Borrowing.of(dict(value["borrowing"]), "transfer"))
+
+
+def borrowed_starts(rows: Iterable[Affordance]) -> dict[int, tuple[Pose, Pose]]:
+    """Return where wrist and attractor were when borrowed rows were made, by step: where they say,
+    for nobody made them with this tool (in, rad).
+    """
+    return {row.step: row.as_placed for row in rows if row.is_borrowed}
 
 
 @dataclass(frozen=True, slots=True)

@@ -194,7 +194,8 @@ def _hours(value: object, of_an_hour: float) -> float:
     number = isinstance(value, int | float) and not isinstance(value, bool)
     if not (number and 0.0 <= value <= most):  # type: ignore[operator]
         raise BadInputError(
-            f"{one_line(value, 40)} must be a number of more than 0 and at most {most:g}"
+            f"{one_line(value, 40)} must be a number of more than 0 (0 with transfer) and at most "
+            f"{most:g}"
         )
     # Adding zero makes -0 into 0: they are equal, and so must be their keys.
     return value / of_an_hour + 0.0  # type: ignore[operator]

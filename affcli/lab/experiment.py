@@ -31,7 +31,7 @@ from affcli.core.specs import (
 )
 from affcli.core.task import tasks_json
 from affcli.core.tool import Tool
-from affcli.core.transfer import Borrowed
+from affcli.core.transfer import Borrowed, borrowed_starts
 from affcli.core.world import World
 from affcli.exploration.borrowing import Lender
 from affcli.lab.believing import TOLD, ToldRun, is_told, told_spec
@@ -222,7 +222,7 @@ class _Learned:
 
     def _row_starts(self) -> RowStarts:
         """Return where the wrist and the attractor truly were when each row was made."""
-        return {one.row.step: one.row.as_placed for one in self.borrowed} | {
+        return borrowed_starts(self.rows) | {
             record.step: (record.execution.wrist_start, truth.start)
             for record, truth in self.steps
             if record.affordance and truth is not None

@@ -1,7 +1,7 @@
 """Carrying over to a new tool: from which runs a robot borrows, and what comes of it (§8)."""
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -67,17 +67,21 @@ def borrowed_by(spec: LearningSpec, lenders: Sequence[Lender], mask: Mask) -> tu
     return borrow(lenders, mask, spec.repertoire, spec.transfer.borrowing, stream)
 
 
-def lender_of(spec: LearningSpec, rows: Sequence[Affordance], mask: Mask) -> Lender:
-    """Return a run as a lender: of the rows that its own robot made, as they were learned.
+def lender_of(spec: LearningSpec, rows: Iterable[Affordance], mask: Mask) -> Lender:
+    """Return a run as a lender, with the mask of its tool."""
+    return Lender(spec.key, spec.tool, lendable(spec, rows), mask)
+
+
+def lendable(spec: LearningSpec, rows: Iterable[Affordance]) -> list[Affordance]:
+    """Return the rows that a run can lend: those that its own robot made, as they were learned.
 
     Of several grasps it lends what it did with the first: that is the one its camera saw.
     """
-    own = [
+    return [
         replace(row, times_used=1, times_successful=1)
         for row in rows
         if not row.is_borrowed and row.binding == spec.binding
     ]
-    return Lender(spec.key, spec.tool, own, mask)
 
 
 def transfer_from(store: Store, text: str) -> Transfer:
@@ -166,7 +170,7 @@ def borrowed_again(store: Store, run: LearningRunInfo) -> tuple[Borrowed, ...] |
     there = map(store.learning.run, store.transfers.lenders(keys).values())
     lenders = [
         lender_of(
-            one.spec, [stored.row for stored in store.learning.rows(one.id)], mask_of(one.spec)
+            one.spec, (stored.row for stored in store.learning.rows(one.id)), mask_of(one.spec)
         )
         for one in there
         if one.status == "done"
@@ -189,7 +193,7 @@ def _lender(store: Store, run: LearningRunInfo, spec: LearningSpec, tell: Tell) 
             f"{place} has {other} than this run; borrow from one that has the same, or learn with "
             "what it has (affcli runs show)"
         )
-    lender_rows = [one.row for one in store.learning.rows(run.id)]
+    lender_rows = (one.row for one in store.learning.rows(run.id))
     seen = store.transfers.mask(run.id)
     if seen is None:
         seen = mask_of(run.spec)
@@ -298,7 +302,7 @@ def lending(store: Store, run: LearningRunInfo) -> tuple[Words, list[LentTable]]
     lenders = []
     for number in sorted(there.values()):
         lender = store.learning.run(number)
-        rows = [one.row for one in store.learning.rows(number) if not one.row.is_borrowed]
+        rows = lendable(lender.spec, (one.row for one in store.learning.rows(number)))
         lenders.append((lender, _mask_shown(store, lender), rows))
     return lent_tables(run, _mask_shown(store, run), borrowed, lenders)
 

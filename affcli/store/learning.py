@@ -13,7 +13,7 @@ from affcli.core.log import LOG, LoggedTry
 from affcli.core.records import AlikeRun, ChangedPart, LearningRunInfo, StepScene, StoredRow
 from affcli.core.replay import Difference
 from affcli.core.specs import LearningSpec, LearningStep, RowStarts
-from affcli.core.transfer import Borrowed
+from affcli.core.transfer import Borrowed, borrowed_starts
 from affcli.core.trial import Attempt
 from affcli.errors import DatabaseError, UsageError, one_line
 from affcli.store import reading, rows
@@ -274,7 +274,7 @@ class Learning:
         stored = [one.row for one in self.rows(run_id)]
         own = [row for row in stored if not row.is_borrowed]
         known, count = {row["step"] for row in made}, self.run(run_id).rows
-        borrowing = {row.step: row.as_placed for row in stored if row.is_borrowed}
+        borrowing = borrowed_starts(stored)
         if len(made) + len(borrowing) < count or any(row.step not in known for row in own):
             raise DatabaseError(
                 f"learning run {run_id} lacks behaviors that made its rows; restore a copy of the "

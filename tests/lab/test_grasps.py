@@ -11,10 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from affcli.config import Settings
-from affcli.core.geometry import Pose
+from affcli.core.geometry import Point, Pose
 from affcli.core.row_filter import RowFilter
 from affcli.core.specs import LearningSpec
 from affcli.core.tool import ToolName
+from affcli.core.transfer import Borrowed, Borrowing, Transfer
 from affcli.core.trial import BabblingRecord
 from affcli.errors import AffcliError, BadInputError, UsageError
 from affcli.lab.film_strips import film_of
@@ -23,7 +24,7 @@ from affcli.lab.predicting import fresh_pushes
 from affcli.lab.replaying import replay_run, replay_trial
 from affcli.lab.run_parts import RunParts, beyond_the_box
 from affcli.lab.table import listed_rows, taken_out
-from affcli.lab.transferring import lender_of
+from affcli.lab.transferring import lendable, lender_of, lending
 from affcli.lab.verifying import verification_spec, verify
 from affcli.lab.viewing import scene_of_behavior, scenes_of_step
 from affcli.report.film import take_title
@@ -215,6 +216,19 @@ def test_it_lends_what_it_did_with_the_grasp_that_its_camera_saw() -> None:
     lent = lender_of(spec, rows, world.mask(spec)).rows
     assert [row.step for row in lent] == [r.step for r in rows if r.binding == spec.binding]
     assert 0 < len(lent) < len(rows)
+
+
+def test_a_figure_shows_of_several_grasps_those_rows_that_can_be_lent(store: Store) -> None:
+    run = stored(store, several())
+    lent = lendable(run.spec, (one.row for one in store.learning.rows(run.id)))
+    borrower = replace(run.spec, seed=9, transfer=Transfer((run.spec.key,), Borrowing()))
+    one = replace(lent[0], step=0)
+    whence = Borrowed(one, run.spec.key, "t-hook", lent[0].step, Point(0.0, 0.0), mirrored=False)
+    info = store.learning.begin(borrower, {}, now(), borrowing=[whence])
+    _, (lender, _) = lending(store, info)
+    assert [row for row, _ in lender.rows] == lent
+    assert lender.heading.endswith(f"1 of {len(lent)} rows lent")
+    assert len(lent) < run.rows
 
 
 def test_rows_that_are_taken_out_have_the_region_of_their_own_grasp(store: Store) -> None:
