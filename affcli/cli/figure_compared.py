@@ -73,7 +73,8 @@ def curve(
         found = lab.courses.curves_of(store, conditions, y, x)
     figures.curve.require_few(found.lines)
     title = f"{found.y.capitalize()} against {found.x}"
-    words = conditions_words(title, conditions)
+    named = [one[:3] for one in conditions]
+    words = conditions_words(title, named)
     if experiment is not None:
-        words = experiment_words(title, experiment, conditions)
+        words = experiment_words(title, experiment, named)
     return Figure(words, partial(figures.curve.curve_figure, found.lines, found.x, found.y))

@@ -270,7 +270,7 @@ def _success(experiment: str, tools: Sequence[str], database: Path) -> Figure:
         conditions = lab.conditions.experiment_named(store, experiment)
         found = lab.courses.curves_of(store, conditions, "solved", "minutes", tools)
     figures.curve.require_few(found.lines)
-    words = experiment_words(LEARNING, experiment, conditions, tools)
+    words = experiment_words(LEARNING, experiment, [one[:3] for one in conditions], tools)
     return Figure(words, partial(figures.curve.curve_figure, found.lines, found.x, found.y))
 
 

@@ -157,12 +157,15 @@ class ConditionCounts:
         cells: for each cell by robot how many trials ended, and how many of them were solved;
             invalid ones are left out.
         failed: the numbers of the robots that could not live, which tried nothing.
+        beside: what its experiment says of it that is not in its session: how long its robots
+            learn, what they invent or borrow before; empty for the usual.
     """
 
     name: str
     session: SessionInfo
     cells: Mapping[Cell, Mapping[int, tuple[int, int]]]
     failed: tuple[int, ...] = ()
+    beside: str = ""
 
     @property
     def robots(self) -> frozenset[int]:

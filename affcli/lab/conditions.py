@@ -10,6 +10,7 @@ from affcli.core.records import SessionInfo
 from affcli.core.results import ConditionCounts
 from affcli.core.specs import LIVES
 from affcli.errors import UsageError, one_line
+from affcli.lab.inventing import are_invented
 from affcli.lab.sessions import finished_session
 from affcli.store import Store
 
@@ -26,11 +27,14 @@ BY: dict[str, tuple[str, ...]] = {
 
 
 class Condition(NamedTuple):
-    """A condition by its name, the session in which its trials are, and how many robots lived."""
+    """A condition by its name, the session in which its trials are, and how many robots lived; and
+    what its experiment says of it `beside`, as in `ConditionCounts`.
+    """
 
     name: str
     session: SessionInfo
     robots: int
+    beside: str = ""
 
 
 def sessions_named(store: Store, numbers: Sequence[int]) -> list[Condition]:
@@ -59,7 +63,21 @@ def sessions_named(store: Store, numbers: Sequence[int]) -> list[Condition]:
 def condition_of(store: Store, name: str, session: SessionInfo) -> Condition:
     """Return a session as a condition."""
     failed = store.sessions.failed_robots(session.id)
-    return Condition(name, session, session.spec.robots - len(failed))
+    robots = session.spec.robots - len(failed)
+    return Condition(name, session, robots, _beside(store, session))
+
+
+def _beside(store: Store, session: SessionInfo) -> str:
+    """Return what an experiment says of a condition that is not in its session."""
+    for one in store.experiments.all():
+        for said in one.definition["condition"] if one.id == session.experiment_id else ():
+            if said["name"] == session.condition:
+                minutes = 60.0 * said["hours"]
+                words = [f"{minutes:g} min a tool"] if minutes != 60.0 else []
+                words += [text for text in said["repertoire"] if are_invented(text)]
+                words += [f"transfer {said['transfer']}"] if "transfer" in said else []
+                return ", ".join(words)
+    return ""
 
 
 def repeated(values: Sequence[T]) -> list[T]:
@@ -170,7 +188,7 @@ def counts_of(store: Store, condition: Condition) -> ConditionCounts:
     """Return what the robots of a condition solved, trials told apart by all that can tell."""
     cells = store.results.solved_by_cell(condition.session.id, FIELDS)
     failed = tuple(one.robot for one in store.sessions.failed_robots(condition.session.id))
-    return ConditionCounts(condition.name, condition.session, cells, failed)
+    return ConditionCounts(condition.name, condition.session, cells, failed, condition.beside)
 
 
 def _fields(by: Sequence[str]) -> list[str]:

@@ -64,7 +64,7 @@ def cost_table(name: str, conditions: Sequence[str], cost: Cost) -> Sheet:
     table.add("learning runs", f"{cost.learning_runs:,}")
     table.add("trials", f"{cost.trials:,}")
     table.add(f"time on {many(cost.workers, 'worker')}, about", clock(cost.whole_seconds))
-    table.add("database, about", f"{cost.whole_bytes / MEGABYTE:,.3g} MB")
+    table.add("database, about", f"{cost.whole_bytes / MEGABYTE:,.1f} MB")
     return table
 
 

@@ -113,7 +113,7 @@ def _conditions_table(result: Comparison) -> Sheet:
     table = Sheet(columns, left=columns, title=f"Conditions, seed {seed}", caption="; ".join(notes))
     for one in (result.against, *result.others):
         missing = (ranges(result.left_out.get(one.name, ())),) if left_out else ()
-        table.add(one.name, str(len(one.robots)), run_words(one.session.spec), *missing)
+        table.add(one.name, str(len(one.robots)), _what(one), *missing)
     return table
 
 
@@ -225,8 +225,14 @@ def _condition_json(one: ConditionCounts) -> dict[str, Any]:
         "seed": spec.seed,
         "robots": len(one.robots),
         "failed": list(one.failed),
-        "what": run_words(spec),
+        "what": _what(one),
     }
+
+
+def _what(one: ConditionCounts) -> str:
+    """Return what a condition is, as far as it is not the usual."""
+    own = run_words(one.session.spec)
+    return ", ".join(filter(None, ("" if own == "defaults" and one.beside else own, one.beside)))
 
 
 def power_tables(
