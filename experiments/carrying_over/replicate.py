@@ -2,7 +2,7 @@
 
 Each borrowed row of each robot is tried once, as `affcli verify` does, seed 0, nothing updated:
 
-    python experiments/carrying_over/replicate.py carrying_over.db --robots 10 --out replicated.json
+    python experiments/carrying_over/replicate.py carrying_over.db --robots 20 --out replicated.json
 """
 
 import argparse
@@ -26,10 +26,12 @@ def main() -> None:
     with open_store(given.database, create=False, write=False) as store:
         (experiment,) = store.experiments.all()
         for condition, session in experiment.conditions:
-            own = store.learning.runs(session_id=session)
-            for run in own:
-                if run.session_id != session or run.spec.robot >= given.robots:
-                    continue
+            runs = store.learning.runs(session_id=session)
+            own = [
+                run for run in runs if run.session_id == session and run.spec.robot < given.robots
+            ]
+            # Where robots borrow, what they borrow from is part of the session, too.
+            for run in [run for run in own if run.spec.transfer is not None] or own:
                 spec = verification_spec(run, run.spec.held, 0, None, None, until_verdict=False)
                 table, _ = store.learning.table(run.id, as_learned=True)
                 tries = [record.replicated for record, _ in replications(spec, run.spec, table)]
