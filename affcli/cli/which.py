@@ -81,4 +81,6 @@ def which(
         tables=lambda: [effects_table(found, where, by)],
     )
     if not as_json:
-        say(best_words(found, where) if found else "nothing was tried")
+        lent = [str(one.id) for one in runs if one.only_borrowed]
+        of_whom = f" by run {', '.join(lent)}, whose rows were borrowed" if lent else ""
+        say(best_words(found, where) if found else f"nothing was tried{of_whom}")

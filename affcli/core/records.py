@@ -117,6 +117,11 @@ class LearningRunInfo:
     note: str | None = None
     kept: Keep = Keep.ALL
 
+    @property
+    def only_borrowed(self) -> bool:
+        """All its rows are other runs', and it will try none: it had no time."""
+        return self.status == "done" and not self.behaviors and self.spec.transfer is not None
+
 
 class Belongings(NamedTuple):
     """How many records belong to a learning run: they would be deleted with it.

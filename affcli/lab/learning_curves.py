@@ -22,7 +22,7 @@ def curves_of(store: Store, runs: Sequence[LearningRunInfo]) -> list[Curve]:
         runs: one at least.
 
     Raises:
-        UsageError: a run has not begun.
+        UsageError: a run has not begun, or only borrowed.
     """
     seconds = _seconds(runs)
     did: dict[int, list[LearningInterval]] = {}
@@ -85,6 +85,8 @@ def _seconds(runs: Sequence[LearningRunInfo]) -> float:
     for run in runs:
         if math.isnan(run.robot_seconds):
             raise UsageError(f"run {run.id} comes from a log without times: it has no curve")
+        if run.only_borrowed:
+            raise UsageError(f"run {run.id} only borrowed: it has no curve")
         if run.robot_seconds == 0.0:
             raise UsageError(f"run {run.id} has not begun; go on with it first")
     return max(run.robot_seconds for run in runs) / INTERVALS

@@ -72,8 +72,8 @@ def run_tables(
     borrowed: Sequence[Borrowed] = (),
     lenders: Mapping[str, int] = MappingProxyType({}),
 ) -> tuple[Sheet, ...]:
-    """Return one run in full, what it learned by behavior unless that was not kept, what it
-    invented, and what it borrowed.
+    """Return one run in full, what it learned by behavior, what it invented, and what it borrowed:
+    each unless there is nothing, or it was not kept.
 
     Args:
         run: which.
@@ -106,7 +106,7 @@ def run_tables(
     }
     sheet = Sheet(tuple(facts), title=f"Run {run.id}", records=True)
     sheet.add(*facts.values())
-    sheets = [sheet] if groups is None else [sheet, groups_table(run, groups)]
+    sheets = [sheet, groups_table(run, groups)] if groups else [sheet]
     return (
         *sheets,
         *([inventions_table(run, inventions)] if inventions else ()),

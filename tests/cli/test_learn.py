@@ -12,7 +12,7 @@ from affcli.lab.run_parts import RunParts
 from affcli.lab.transferring import transfer_from
 from affcli.simulation.tools.paper import TOOL_PARTS
 from affcli.store import open_store
-from tests.cli.program import Ended, affcli, contents, done, executed, rows, side_by_side
+from tests.cli.program import Ended, affcli, contents, done, executed, refused, rows, side_by_side
 
 SHORT = ("learn", "--tool", "stick", "--behaviors", "60")
 
@@ -198,6 +198,24 @@ def test_what_borrows_is_begun_with_all_its_tools_or_with_none(tmp_path: Path) -
         assert refused.err.startswith(
             f"affcli: {said[:-2]} 0.0: must be more than 0, but for what "
         )
+
+
+def test_a_run_that_only_borrowed_is_told_from_one_that_has_not_begun(tmp_path: Path) -> None:
+    """And no table of what it tried is shown, for it tried nothing."""
+    database = tmp_path / "my.db"
+    done("learn", "--tool", "t-hook", "--minutes", "8", "--db", database)
+    borrow = ("learn", "--tool", "l-hook", "--transfer-from", "1", "--minutes", "0")
+    for shown in (done(*borrow, "--db", database), done("runs", "show", "2", "--db", database)):
+        assert "Run 2: what it borrowed" in shown.out
+        assert "Run 2: what the l-hook affords" not in shown.out
+    report = done("report", "--db", database).out
+    assert "Run 1: what the t-hook affords" in report
+    assert "Run 2: what the l-hook affords" not in report
+    which = done("which", "nearer", "--tool", "l-hook", "--db", database)
+    assert which.err == "nothing was tried by run 2, whose rows were borrowed\n"
+    figure = ("figure", "learning", "--db", database, "--out", tmp_path / "a.svg")
+    assert "run 2 only borrowed: it has no curve" in refused(2, *figure, "--run", "2")
+    assert "Learning over robot time; run 1: T-hook" in done(*figure).err
 
 
 def test_a_run_that_borrows_goes_on_and_says_no_more_than_it_must(tmp_path: Path) -> None:

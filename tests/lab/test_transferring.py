@@ -130,8 +130,8 @@ def test_with_minutes_it_babbles_too_and_a_kill_changes_nothing(store: Store) ->
 
 @pytest.mark.usefixtures("lenders")
 def test_a_tool_whose_rows_were_borrowed_can_break(store: Store) -> None:
-    """Where a borrowed row was made is where it says, for nobody made it with this tool: what pushes
-    away with the half that is gone is lost, and nothing that does so with the other.
+    """Where a borrowed row was made is where it says, for nobody made it with this tool: what
+    pushes away with the half that is gone is lost, and nothing that does so with the other.
     """
     info = learn(store, new_tool(store, "1,2"), now).info
     right = info.spec.held.without(["left bar", "left outer tine", "left inner tine"])
