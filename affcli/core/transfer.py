@@ -75,16 +75,25 @@ class Borrowing:
         checked = {k: known[k].checked(v, f"{place}: {k}") for k, v in given.items()}
         return cls(**checked)  # type: ignore[arg-type]
 
-    @property
-    def differing(self) -> dict[str, Value]:
-        """What is not the default, by name."""
-        usual = Borrowing()
+    @classmethod
+    def first(cls) -> "Borrowing":
+        """Return the defaults number 1, which stored ones differ from: see `CHANGED`."""
+        return cls(**{name: former[0] for name, former in CHANGED.items()})  # type: ignore[arg-type]
+
+    def differing(self, usual: "Borrowing") -> dict[str, Value]:
+        """Return in what it differs from another, by name."""
         values = {field.name: getattr(self, field.name) for field in fields(self)}
         return {k: v for k, v in values.items() if v != getattr(usual, k)}
 
     def __str__(self) -> str:
         """Write what is not the default, as it is given."""
-        return ",".join(f"{name}={shown(value)}" for name, value in self.differing.items())
+        differing = self.differing(Borrowing())
+        return ",".join(f"{name}={shown(value)}" for name, value in differing.items())
+
+
+CHANGED: dict[str, tuple[Value, ...]] = {}
+"""Former defaults of `Borrowing`, by name, oldest first: whoever changes one notes it here, and
+what was stored before means what it meant."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +110,10 @@ class Transfer:
 
     def canonical(self) -> dict[str, Any]:
         """Return it as JSON types."""
-        return {"lenders": list(self.lenders), "borrowing": self.borrowing.differing}
+        return {
+            "lenders": list(self.lenders),
+            "borrowing": self.borrowing.differing(Borrowing.first()),
+        }
 
     def __str__(self) -> str:
         """Write from how many runs it is, and what of the way is not the default."""
@@ -114,7 +126,8 @@ class Transfer:
         lenders = tuple(map(str, value["lenders"]))
         if not lenders or list(lenders) != sorted(set(lenders)):
             raise ValueError("lenders in another order")
-        return cls(lenders, Borrowing.of(dict(value["borrowing"]), "transfer"))
+        given = Borrowing.first().differing(Borrowing()) | dict(value["borrowing"])
+        return cls(lenders, Borrowing.of(given, "transfer"))
 
 
 def borrowed_starts(rows: Iterable[Affordance]) -> dict[int, tuple[Pose, Pose]]:

@@ -134,7 +134,7 @@ class Condition:
             "tools": [self.parts.tool(tool).canonical() for tool in self.tools],
             "tasks": [one if isinstance(one, str) else tasks_json(one) for one in self.tasks],
             **({"inventing": list(map(str, self.inventing))} if self.inventing else {}),
-            **({"transfer": str(self.transferring)} if self.transferring else {}),
+            **({"transfer": self.transferring.canonical(self.parts)} if self.transferring else {}),
         }
 
 

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -270,6 +271,14 @@ class Transferring:
         """Write it as `parse` reads it."""
         params = [f"minutes={shown(self.minutes)}", *filter(None, (str(self.borrowing),))]
         return f"{','.join(self.tools)}:{','.join(params)}"
+
+    def canonical(self, parts: RunParts) -> dict[str, Any]:
+        """Return it with its tools by value, as JSON types."""
+        return {
+            "tools": [parts.tool(tool).canonical() for tool in self.tools],
+            "minutes": self.minutes,
+            "borrowing": self.borrowing.differing(Borrowing.first()),
+        }
 
     def lenders(self, parts: RunParts, tool: str, seed: int, robot: int) -> list[LearningSpec]:
         """Return the learning runs from which a robot with these parts borrows for a tool."""

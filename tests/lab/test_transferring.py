@@ -15,10 +15,12 @@ import pytest
 from affcli import registry
 from affcli.behaviors.moving import EXTEND_ARM
 from affcli.config import Settings, settings_with
+from affcli.core import transfer
 from affcli.core.identity import Component
 from affcli.core.mask import Mask
 from affcli.core.records import LearningRunInfo
 from affcli.core.specs import LearningSpec
+from affcli.core.transfer import Borrowing, Transfer
 from affcli.errors import AffcliError, BadInputError, DatabaseError, NotSeenError, UsageError
 from affcli.lab.believing import TOLD
 from affcli.lab.breaking import break_tool
@@ -312,6 +314,29 @@ def test_the_robots_of_a_condition_borrow_from_what_each_learned(two_lives: Path
         trial = store.trials.trials(session_id=2)[0]
         assert replay_trial(store, trial.id).differences == ()
     assert not any(found.wrong for found in check(two_lives))
+
+
+def test_the_tools_that_lend_are_in_the_key_by_value() -> None:
+    """As those that are learned: a lender of other sizes makes it another experiment."""
+    life = experiment_of(tomllib.loads(LIFE), "a test")
+    lending = life.conditions[1].canonical()["transfer"]
+    assert lending["tools"] == [PARTS.tool(name).canonical() for name in ("t-hook", "l-stick")]
+    assert (lending["minutes"], lending["borrowing"]) == (8.0, {"each": 20})
+    assert "transfer" not in life.conditions[0].canonical()
+
+
+def test_a_default_that_changes_changes_no_stored_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As if the limit had been 0.9 at first."""
+    keys = ("0" * 64,)
+    assert Transfer(keys, Borrowing()).canonical() == {"lenders": [*keys], "borrowing": {}}
+    monkeypatch.setitem(transfer.CHANGED, "limit", (0.9,))
+    old = Transfer.from_canonical({"lenders": [*keys], "borrowing": {"each": 9}})
+    assert old == Transfer(keys, Borrowing(limit=0.9, each=9))
+    assert old.canonical()["borrowing"] == {"each": 9}
+    new = Transfer(keys, Borrowing())
+    assert new.canonical()["borrowing"] == {"limit": 0.3}
+    assert Transfer.from_canonical(new.canonical()) == new
+    assert (str(new), str(old)) == ("1 run", "1 run:limit=0.9,each=9")
 
 
 def test_no_time_is_one_time_however_it_is_written() -> None:
