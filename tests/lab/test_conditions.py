@@ -97,8 +97,8 @@ def test_sessions_have_the_names_that_their_experiment_gives_them(store: Store) 
             insert_one(
                 connection,
                 experiment,
-                {"name": name, "question": "", "definition": "{}", "key": "k", "versions": "{}"}
-                | {"status": "done", "started_at": NOW},
+                {"name": name, "question": "", "key": "k", "versions": "{}"}
+                | {"status": "done", "started_at": NOW, "definition": '{"condition": []}'},
             )
             for name in "ef"
         )
