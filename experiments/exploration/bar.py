@@ -3,8 +3,9 @@
     .venv/bin/python experiments/exploration/bar.py exploration.db [--json results.json]
 
 They are those of T-hook, L-stick and stick, but for the stick at goal 1, where it cannot pull.
-Prints the mean of the robots of each condition, and its difference, robot by robot, from the first,
-with 95 % intervals (Student's t). The JSON has each robot's successes, and those with all tools.
+Prints the mean of the robots of each condition, and its difference, robot by robot, from the first
+with the same planner, with 95 % intervals (Student's t). The JSON has each robot's successes, and
+those with all tools.
 """
 
 import argparse
@@ -35,15 +36,16 @@ def main() -> None:
         conditions = experiment_named(store, EXPERIMENT)
         counts = {one.name: counts_of(store, one).cells for one in conditions}
     spec = conditions[0].session.spec
-    first, *_ = counts
-    told = {name: summary(cells, counts[first]) for name, cells in counts.items()}
+    planner = {one.name: str(one.session.spec.planner) for one in conditions}
+    firsts = {planner[name]: name for name in reversed(list(planner))}
+    told = {name: summary(own, counts[firsts[planner[name]]]) for name, own in counts.items()}
     for name, one in told.items():
-        line = f"{name:28} {one['mean']:5.1f} {within(one['interval'], '.1f')}"
-        if name != first:
+        line = f"{name:36} {one['mean']:5.1f} {within(one['interval'], '.1f')}"
+        if name not in firsts.values():
             line += f"; {one['difference']:+.1f} {within(one['paired'], '+.1f')}"
         print(line)
     if args.json is not None:
-        head = {"robots": spec.robots, "seed": spec.seed, "against": first}
+        head = {"robots": spec.robots, "seed": spec.seed, "against": firsts}
         args.json.write_text(json.dumps({**head, "conditions": told}, indent=1) + "\n")
 
 

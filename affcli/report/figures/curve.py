@@ -18,7 +18,7 @@ from affcli.report.figures.learning import COLORS, DASHES
 
 BAND = 0.2
 """How dense a band is, from 0 to 1."""
-MARKS = ("o", "s", "^", "D", "v", "P")
+MARKS = ("o", "s", "^", "D", "v", "P", "X", "*")
 """Of conditions that are told apart."""
 MOST_NAMES = len(MARKS)
 """More lines nobody tells apart."""
