@@ -25,7 +25,9 @@ def overview_tables(overview: Overview) -> list[RenderableType]:
     runs = {run.id: run for run, _ in overview.learned}
     if overview.learned:
         shown.append(learned_table(list(runs.values())))
-        shown += [groups_table(run, groups) for run, groups in overview.learned if groups]
+        shown += [
+            groups_table(run, groups) for run, groups in overview.learned if not run.only_borrowed
+        ]
     shown += counts_tables(overview.solved, runs)
     if overview.breakings:
         shown.append(_breakings_table(overview.breakings))

@@ -72,8 +72,8 @@ def run_tables(
     borrowed: Sequence[Borrowed] = (),
     lenders: Mapping[str, int] = MappingProxyType({}),
 ) -> tuple[Sheet, ...]:
-    """Return one run in full, what it learned by behavior, what it invented, and what it borrowed:
-    each unless there is nothing, or it was not kept.
+    """Return one run in full, what it learned by behavior unless that was not kept or it only
+    borrowed, what it invented, and what it borrowed.
 
     Args:
         run: which.
@@ -106,7 +106,8 @@ def run_tables(
     }
     sheet = Sheet(tuple(facts), title=f"Run {run.id}", records=True)
     sheet.add(*facts.values())
-    sheets = [sheet, groups_table(run, groups)] if groups else [sheet]
+    nothing = groups is None or run.only_borrowed
+    sheets = [sheet] if nothing else [sheet, groups_table(run, groups or ())]
     return (
         *sheets,
         *([inventions_table(run, inventions)] if inventions else ()),
