@@ -61,7 +61,7 @@ Minutes = Annotated[
     ),
 ]
 TransferFrom = Annotated[
-    str | None,
+    list[str] | None,
     typer.Option(
         "--transfer-from",
         help="First it borrows from these runs what carries over.",
@@ -137,7 +137,7 @@ def learn(
         hours = minutes / 60.0
     elif behaviors is None and hours is None:
         hours = 1.0
-    if hours == 0.0 and transfer_from is None:
+    if hours == 0.0 and not transfer_from:
         raise BadInputError(
             f"{given} 0.0: must be more than 0, but for what only borrows: --transfer-from RUN,..."
         )
@@ -151,9 +151,10 @@ def learn(
         world=world,
     )
     specs = [parts.spec(name, seed, 0, hours, behaviors) for name in names]
-    with opened(database, create=bool(names) and transfer_from is None, write=True) as store:
-        if transfer_from is not None:
-            transfer = lab.transferring.transfer_from(store, transfer_from)
+    with opened(database, create=bool(names) and not transfer_from, write=True) as store:
+        if transfer_from:
+            lenders = lab.transferring.joined(transfer_from)
+            transfer = lab.transferring.transfer_from(store, lenders)
             specs = [replace(spec, transfer=transfer) for spec in specs]
         if not names:
             specs = lab.learning.interrupted(store)

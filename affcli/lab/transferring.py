@@ -85,6 +85,20 @@ def lendable(spec: LearningSpec, rows: Iterable[Affordance]) -> list[Affordance]
     ]
 
 
+def joined(texts: Sequence[str]) -> str:
+    """Return as one text what was said one by one: all runs, and after them how.
+
+    Raises:
+        BadInputError: how is said of two of them.
+    """
+    hows = [text.partition(":")[2] for text in texts if ":" in text]
+    if len(hows) > 1:
+        said = one_line(" and ".join(hows), 60)
+        raise BadInputError(f"{OPTION}: how to borrow is said twice ({said}); say it once")
+    runs = ",".join(text.partition(":")[0] for text in texts)
+    return ":".join([runs, *hows])
+
+
 def transfer_from(store: Store, text: str) -> Transfer:
     """Return what ``1,2:limit=0.2`` stands for: runs to borrow from, and how.
 

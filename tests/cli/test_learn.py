@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from affcli.config import Settings
-from affcli.errors import UsageError
+from affcli.errors import BadInputError, UsageError
 from affcli.lab.learning import begun
 from affcli.lab.run_parts import RunParts
 from affcli.lab.transferring import transfer_from
@@ -193,6 +193,14 @@ def test_what_borrows_is_begun_with_all_its_tools_or_with_none(tmp_path: Path) -
     for alike in ("--minutes=-0", "--minutes=0", "--hours=-0.0"):
         again = done(*borrow, "--tool", "t-hook", alike)
         assert again.err.startswith("already learned, nothing to do: t-hook (run 2, seed 0)")
+    done("learn", "--tool", "l-stick", "--minutes", "4", "--db", database)
+    two = ("--tool", "fork", "--minutes", "0", "--db", database, "--transfer-from")
+    done("learn", *two, "1,3:each=9")
+    again = done("learn", *two, "1", "--transfer-from", "3:each=9")
+    assert again.err.startswith("already learned, nothing to do: fork (run 4, seed 0)")
+    twice = affcli("learn", *two, "1:each=9", "--transfer-from", "3:each=8")
+    assert (twice.code, len(twice.err.splitlines())) == (BadInputError.exit_code, 1)
+    assert "--transfer-from: how to borrow is said twice (each=9 and each=8)" in twice.err
     for said in ("--minutes=0", "--hours=0"):
         refused = affcli("learn", "--tool", "fork", said, "--db", database)
         assert refused.err.startswith(
