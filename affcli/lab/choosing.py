@@ -69,7 +69,9 @@ def learned_runs(
         simulated = tool if tool in registry.parts("tools") else "t-hook"
         learning = with_database(f"affcli learn --tool {simulated}", records.path)
         where = f"in {one_line(records.path)}{only}"
-        raise UsageError(f"nothing learned with the {wanted} {where}; first run: {learning}")
+        known = one_line(" or ".join(_learned_tools(records, usable=usable)), 60)
+        other = f"; or name what was learned with: --tool {known}" if known else ""
+        raise UsageError(f"nothing learned with the {wanted} {where}; first run: {learning}{other}")
     return runs
 
 

@@ -172,6 +172,11 @@ def test_nothing_learned_names_the_command_to_run(
     assert empty.read_bytes() == before
 
 
+def test_with_another_tool_it_names_those_that_were_learned(learned: Path) -> None:
+    line = refused(2, "solve", "--goal", "2", "--tool", "l-hook", "--db", learned)
+    assert line.strip().endswith("; or name what was learned with: --tool stick or t-hook")
+
+
 def test_an_unfinished_run_is_not_learned(empty: Path) -> None:
     """A table that is half full would make another robot of it."""
     done("learn", "--tool", "stick", "--behaviors", "5", "--db", empty)
