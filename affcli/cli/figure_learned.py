@@ -305,5 +305,6 @@ def _runs_to_draw(
             raise UsageError(
                 f"no learning runs but of robots: --session {reproduced[-1].id} draws these"
             )
-        lab.choosing.learned_runs(store, tools[0] if tools else None)
+        # There is none, which this says; or it only borrowed, which its curve says.
+        return lab.choosing.learned_runs(store, tools[0] if tools else None)
     return runs

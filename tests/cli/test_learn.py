@@ -222,7 +222,8 @@ def test_a_run_that_only_borrowed_is_told_from_one_that_has_not_begun(tmp_path: 
     which = done("which", "nearer", "--tool", "l-hook", "--db", database)
     assert which.err == "nothing was tried by run 2, whose rows were borrowed\n"
     figure = ("figure", "learning", "--db", database, "--out", tmp_path / "a.svg")
-    assert "run 2 only borrowed: it has no curve" in refused(2, *figure, "--run", "2")
+    for asked in (("--run", "2"), ("--tool", "l-hook")):
+        assert "run 2 only borrowed: it has no curve" in refused(2, *figure, *asked)
     assert "Learning over robot time; run 1: T-hook" in done(*figure).err
 
 
