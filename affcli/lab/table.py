@@ -11,7 +11,7 @@ from affcli.core.records import LearningRunInfo, StoredRow, StoredStep
 from affcli.core.row_filter import Column, Relation, RowFilter
 from affcli.core.specs import LIVES, LearningSpec, TrialSpec
 from affcli.store import Store
-from affcli.store.reading import behavior_call
+from affcli.store.reading import behavior_call, reading_what_was_written
 
 Made = TypeVar("Made")
 Write = Callable[[Sequence[Column], Iterable[tuple[Any, ...]]], Made]
@@ -117,7 +117,10 @@ def _with_region(
     for row in rows:
         spec = specs.get(row[run])
         if spec is not None:  # and not of a run that was begun since
-            binding = behavior_call(row[name], row[params])
+            binding = spec.binding
+            if spec.other_bindings:
+                with reading_what_was_written(f"a row of run {row[run]}"):
+                    binding = behavior_call(row[name], row[params])
             part = region_at(spec.held, binding, row[angle], Point(row[x], row[y]))
             if region in (None, part):
                 yield (*row, part)
