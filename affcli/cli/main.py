@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 from affcli.cli.commands import how_it_goes_on
-from affcli.cli.signals import SignalHandler
+from affcli.cli.signals import SignalHandler, Stopped
 from affcli.cli.terminal import prepare_streams, say
 from affcli.errors import AffcliError, BadInputError, one_line
 
@@ -34,6 +34,14 @@ def main() -> int:
         return _fail("the working folder is gone; cd to one that is there", BadInputError.exit_code)
     handler = SignalHandler()
     try:
+        return _run(handler)
+    except Stopped:  # it came between an error and its line
+        return _stopped(handler)
+
+
+def _run(handler: SignalHandler) -> int:
+    """Run the command; return its exit code, after a line about what ended it."""
+    try:
         # Imported only now: a ctrl-C meanwhile is one line like any other.
         from affcli.cli.app import run  # noqa: PLC0415
 
@@ -44,14 +52,20 @@ def main() -> int:
         # After a signal this may be another exception than ours: sqlite3 forgets what is raised in
         # its callbacks, and SQLAlchemy closes the connection that a signal interrupts.
         if handler.signum is not None:
-            again = how_it_goes_on(sys.argv[1:])
-            return _fail(f"stopped; what was saved is kept{again}", 128 + handler.signum)
+            return _stopped(handler)
         if isinstance(error, AffcliError):
             return _fail(str(error), error.exit_code)
         if _ran_out_of_memory(error):
             return _fail(OUT_OF_MEMORY, BadInputError.exit_code)
         raise
     return code
+
+
+def _stopped(handler: SignalHandler) -> int:
+    """Say that a signal ended the command, and how it goes on."""
+    handler.silence()
+    again = how_it_goes_on(sys.argv[1:])
+    return _fail(f"stopped; what was saved is kept{again}", 128 + (handler.signum or 0))
 
 
 def _ran_out_of_memory(error: BaseException | None) -> bool:

@@ -39,7 +39,9 @@ class SignalHandler:
         raise Stopped
 
     def silence(self) -> None:
-        """Stop raising."""
+        """Stop raising: nothing is open any more, and a signal that comes now ends the process."""
+        for either in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(either, signal.SIG_DFL)
         signal.setitimer(signal.ITIMER_REAL, 0.0)
 
 

@@ -220,6 +220,35 @@ def test_stopped_before_affcli_listens_it_is_silent(module: str, signum: signal.
     assert (ended.returncode, ended.stdout, ended.stderr) == (-signum, "", "")
 
 
+TELLING = """
+import os, sys
+from affcli.cli import main
+
+told = main.say
+
+def interrupted(line):
+    os.kill(os.getpid(), int(sys.argv[-1]))
+    told(line)
+
+main.say = interrupted
+sys.exit(main.main())
+"""
+"""The program, sent a signal when it is about to say what was wrong."""
+
+
+@pytest.mark.fault(45)
+@pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGTERM])
+def test_stopped_while_it_says_what_was_wrong_it_ends_at_once(signum: signal.Signals) -> None:
+    ended = subprocess.run(
+        [sys.executable, "-c", TELLING, "solve", str(int(signum))],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (ended.returncode, ended.stdout, ended.stderr) == (-signum, "", "")
+
+
 @pytest.mark.torture
 @pytest.mark.fault(3)
 @pytest.mark.fault(45)
