@@ -23,6 +23,7 @@ CHANGING = {
         *("robot_seconds", "calibration", "note"),
     },
     "session": {"status", "finished_at"},
+    "experiment": {"status", "finished_at"},
 }
 """Columns that change after a record is saved; all the others stay for ever."""
 TRIED = "SELECT affordance_id, replicated FROM"
