@@ -19,7 +19,7 @@ from affcli.planning import nested_query, prediction
 from affcli.simulation.table_world import TableWorld
 from affcli.simulation.worlds import TABLE_VERSION
 
-MOVING = ("extend-arm", "contract-arm", "slide-arm-left", "slide-arm-right")
+MOVING = ("extend-arm", "contract-arm", "slide-arm-left", "slide-arm-right", "slide-arm")
 TURNING = ("turn-wrist", "turn-and-pull", "turn-and-slide")
 SETTINGS = {
     "arm.elbow_max_degrees": 146.0,
@@ -137,7 +137,7 @@ LIMITS = {
     **{f"behaviors: {name}: offset_distance": (0.1, 20.0) for name in MOVING},
     **{f"behaviors: {name}: angle": (-180.0, 180.0) for name in TURNING},
     **{f"behaviors: {name}: distance": (0.1, 20.0) for name in TURNING},
-    "behaviors: turn-and-slide: direction": (-360.0, 360.0),
+    **{f"behaviors: {name}: direction": (-360.0, 360.0) for name in ("slide-arm", TURNING[-1])},
     **{
         f"explorers: {name}: {param}": limits
         for name in ("goal-babbling", "information-gain", "occupancy", "thompson")

@@ -4,8 +4,7 @@ The paper's robot has no such behavior, and so cannot pull with a stick: §7.1 a
 "turn-the-wrist-at-an-angle-and-then-pull".
 """
 
-import math
-
+from affcli.behaviors.moving import DIRECTION, slide_towards
 from affcli.core.behavior import BehaviorCall, BehaviorName, ExploratoryBehavior, Repertoire
 from affcli.core.motion import Slide, Turn
 from affcli.core.part import Part
@@ -19,13 +18,6 @@ ANGLE = Setting(
     *(30.0, "degrees"), "How far the wrist turns, positive to the left.", *(-180.0, 180.0)
 )
 DISTANCE = Setting(5.0, "in", "How far the arm travels then.", 0.1, 20.0)
-DIRECTION = Setting(
-    *(180.0, "degrees"),
-    "Where the arm goes: 0 is to its right, 90 away from it, 180 to its left.",
-    *(-360.0, 360.0),
-)
-DECIMALS = 9
-"""Of a slide's parts (in), so that one along an axis of the table keeps to it."""
 
 
 def turn_wrist(angle: float) -> Repertoire:
@@ -43,9 +35,8 @@ def turn_and_pull(angle: float, distance: float) -> Repertoire:
 def turn_and_slide(angle: float, distance: float, direction: float) -> Repertoire:
     """Return one behavior: turn, then slide in a direction of the table (degrees, in, degrees)."""
     params = {"angle": angle, "distance": distance, "direction": direction}
-    cos, sin = math.cos(math.radians(direction)), math.sin(math.radians(direction))
-    slide = Slide(round(distance * cos, DECIMALS), round(distance * sin, DECIMALS))
-    return (ExploratoryBehavior(BehaviorCall.of(TURN_AND_SLIDE, params), (Turn(angle), slide)),)
+    motion = (Turn(angle), slide_towards(direction, distance))
+    return (ExploratoryBehavior(BehaviorCall.of(TURN_AND_SLIDE, params), motion),)
 
 
 PARTS = (

@@ -17,6 +17,7 @@ from affcli.behaviors.moving import (
     SLIDE_ARM_RIGHT,
     moving,
     paper_repertoire,
+    sliding,
 )
 from affcli.behaviors.positioning import position_wrist, wrist_target
 from affcli.behaviors.turning import turn_and_pull, turn_and_slide, turn_wrist
@@ -112,6 +113,18 @@ def test_position_wrist_names_no_angle_when_it_is_0() -> None:
 def test_position_wrist_without_an_observation_is_refused() -> None:
     with pytest.raises(ValueError, match="observe first"):
         wrist_target(position_wrist(Point(0.0, 8.0)), None)
+
+
+def test_the_arm_slides_in_any_direction_of_the_table() -> None:
+    (diagonal,), (left,) = sliding(45.0, 5.0), sliding(180.0, 2.0)
+    (slide,) = diagonal.motion
+    assert isinstance(slide, Slide)
+    assert (slide.dx, slide.dy) == pytest.approx((5.0 / math.sqrt(2.0),) * 2)
+    assert left.motion == moving(SLIDE_ARM_LEFT, 2.0)[0].motion
+    assert [call_words(one.call) for one in (diagonal, left)] == [
+        "slide arm 45 deg 5",
+        "slide arm 180 deg 2",
+    ]
 
 
 def test_turning_behaviors_turn_and_then_slide_the_tool_at_the_angle() -> None:
