@@ -20,7 +20,7 @@ from affcli.core.choice import Situation
 from affcli.core.geometry import Point
 from affcli.core.goal import Goal
 from affcli.core.observation import Observation, SensorKind
-from affcli.core.ports import Robot, Sliding
+from affcli.core.ports import Robot, can_slide
 from affcli.core.specs import LearningSpec
 from affcli.core.task import GoalRegion
 from affcli.core.trial import Attempt
@@ -137,7 +137,7 @@ class TableEnv(gymnasium.Env[Seen, Action]):
         if self._goal is None:
             raise UsageError("there is no goal: use affcli/Reach-v0, and reset it first")
         robot = self.setting.robot
-        slides = robot.slides if isinstance(robot, Sliding) else None
+        slides = robot.slides if can_slide(robot) else None
         stands = (robot.wrist, robot.reaches, robot.holding, slides)
         return Situation(table, self.seen, self._goal, *stands)
 
