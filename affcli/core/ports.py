@@ -5,7 +5,7 @@ Each contract says what is asked, when, how often, and what holds after a failur
 """
 
 from collections.abc import Mapping
-from typing import Any, Protocol, TypeGuard, runtime_checkable
+from typing import Any, Protocol, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,7 +66,6 @@ class Robot(Protocol):
         """
 
 
-@runtime_checkable
 class Sliding(Protocol):
     """A robot that knows where it can slide a tool, a capability that it may lack."""
 
