@@ -1,8 +1,6 @@
 """What the database holds can be done again, and equals its record to the bit."""
 
-import sqlite3
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -34,6 +32,7 @@ from tests.lab.quick import (
     LEISURELY,
     NOW,
     PLANNER,
+    altered,
     counted,
     learned,
     now,
@@ -66,13 +65,6 @@ def assert_equal_to_the_record(store: Store) -> None:
         # Those before the last are not filmed, and told only where they differ.
         (last,) = replay_run(store, run, run.behaviors)
         assert last.differences == ()
-
-
-def altered(path: Path, statement: str) -> None:
-    """Change the database as no affcli would."""
-    with sqlite3.connect(path) as driver:
-        driver.execute(statement)
-    driver.close()
 
 
 def test_all_96_trials_of_a_robot_are_what_their_record_says(store: Store) -> None:

@@ -1,6 +1,7 @@
 """The robot that sees: camera runs are as deterministic, resumable and recorded as any other."""
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -8,6 +9,11 @@ import pytest
 
 from affcli.config import Settings, settings_from, settings_with, with_sensor
 from affcli.core.observation import SENSOR_KINDS, SensorKind
+from affcli.core.ports import Sensor
+from affcli.core.scene import Scene
+from affcli.core.tool import Tool
+from affcli.core.workspace import Workspace
+from affcli.core.world import MakeSensor
 from affcli.lab.breaking import break_tool
 from affcli.lab.learning import learn
 from affcli.lab.learning_run import LearningRun
@@ -15,6 +21,7 @@ from affcli.lab.reproduction import Reproduced, one_robot, reproduce
 from affcli.lab.run_parts import RunParts
 from affcli.lab.trials import whole_trial
 from affcli.perception.camera import Camera
+from affcli.perception.noisy_sensor import NoisySensor
 from affcli.simulation.sensing import SimulatedSight, eye_of
 from affcli.simulation.table_world import TableWorld
 from affcli.store import Store, run_sql
@@ -29,6 +36,7 @@ from tests.lab.quick import (
     table_from,
 )
 
+NOISE = Settings().sensor
 SEEING = with_sensor(Settings(), "camera")
 QUICK = with_sensor(
     settings_with({"motion": {"hold": 40.0}, "trial": {"max_steps": 1}}, "a test"), "camera"
@@ -53,6 +61,33 @@ def test_each_kind_of_sensor_sees_the_same_table_with_its_own_error() -> None:
     assert off["exact"] == 0.0
     assert 0.0 < off["noisy"] < 0.02
     assert 0.0 < off["camera"] < 0.02
+
+
+def test_a_sensor_that_was_brought_is_given_the_place_the_tool_and_the_noise() -> None:
+    look = setting_with("t-hook").scene()
+    given: list[tuple[Scene, np.random.Generator, Workspace, Tool]] = []
+
+    def make(
+        look: Callable[[], Scene], rng: np.random.Generator, workspace: Workspace, tool: Tool
+    ) -> Sensor:
+        given.append((look(), rng, workspace, tool))
+        return NoisySensor(look, NOISE, rng)
+
+    class Brought:
+        """What comes with another package."""
+
+        def sensor(self, kind: str) -> MakeSensor:
+            return {"theirs": make}[kind]
+
+    rng, usual, tool = np.random.default_rng(3), Settings(), tool_named("t-hook")
+    sight = SimulatedSight(
+        *("theirs", NOISE, usual.camera, usual.workspace, tool, 0, 0), brought=Brought()
+    )
+    seen = sight.sensor(lambda: look, rng).observe()
+    assert given == [(look, rng, usual.workspace, tool)]
+    own = NoisySensor(lambda: look, NOISE, np.random.default_rng(3)).observe()
+    assert seen == own
+    assert sight.calibration is None
 
 
 def test_the_default_noise_is_the_camera_s_own_error() -> None:

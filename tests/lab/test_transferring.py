@@ -27,12 +27,12 @@ from affcli.lab.breaking import break_tool
 from affcli.lab.conducting import begin, run
 from affcli.lab.definition import experiment_of
 from affcli.lab.learning import begun, interrupted, learn
-from affcli.lab.replaying import replay_run, replay_trial
+from affcli.lab.replaying import replay_borrowing, replay_run, replay_trial
 from affcli.lab.run_parts import RunParts, world_of
 from affcli.lab.transferring import lenders_gone, mask_of, transfer_from, whence
 from affcli.lab.verifying import replications, verification_spec
 from affcli.store import Store, check, merge, open_store, run_sql
-from tests.lab.quick import now
+from tests.lab.quick import altered, now
 
 MINUTES = 8.0
 NEW = "garden-rake"
@@ -128,6 +128,26 @@ def test_with_minutes_it_babbles_too_and_a_kill_changes_nothing(store: Store) ->
     assert not any(found.wrong for found in check(store.path))
     with pytest.raises(UsageError, match="borrows from was deleted; name others: --transfer-from"):
         learn(store, replace(spec, seed=9), now)
+
+
+@pytest.mark.usefixtures("lenders")
+def test_what_was_borrowed_is_borrowed_again_and_held_against_the_record(store: Store) -> None:
+    info = learn(store, new_tool(store, "1,2"), now).info
+    assert replay_borrowing(store, info) == (info.rows, ())
+    altered(
+        store.path, "update affordance set movement = 99 where learning_run_id = 3 and step = 0"
+    )
+    altered(store.path, "update borrowed set shift_x = 99 where learning_run_id = 3 and step = 0")
+    count, found = replay_borrowing(store, info)
+    assert (count, [(one.number, one.column) for one in found]) == (
+        info.rows,
+        [(0, "movement"), (0, "shift_x")],
+    )
+    altered(store.path, "update learning_run set kept = 'trials' where id = 3")
+    with pytest.raises(UsageError, match="run 3: its rows were not kept"):
+        replay_borrowing(store, info)
+    store.runs.delete(2)
+    assert replay_borrowing(store, info) == (None, ())
 
 
 @pytest.mark.usefixtures("lenders")
