@@ -22,7 +22,9 @@ def test_a_full_disk_loses_only_the_chunk_that_did_not_fit(database: Path) -> No
         pages = store.database._driver.execute("PRAGMA page_count").fetchone()[0]
         store.database._driver.execute(f"PRAGMA max_page_count = {pages + 2}")
         more = learning_steps(900, first=91)
-        with pytest.raises(DatabaseError, match="the disk is full; what was saved before is kept"):
+        with pytest.raises(
+            DatabaseError, match=f"^{database}: the disk is full; what was saved before is kept"
+        ):
             store.learning.append(run.id, 90, more, {}, 2, done=False, now=NOW)
         assert store.learning.begin(spec, VERSIONS, NOW) == saved
         store.database._driver.execute("PRAGMA max_page_count = 1000000")
