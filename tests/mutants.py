@@ -46,6 +46,8 @@ MEMORY = 8 << 30
 """Bytes of address space: a mutant may ask for any number."""
 FIRST = 3
 """So many files of tests run before the others are even imported: they find most."""
+LIMITS = "tests/test_quoted.py"
+"""Its tests read constants, and so execute no line of a file that has them."""
 PATIENCE = 20
 """A test may wait so many times longer than it may work."""
 LATE = (-signal.SIGPROF, -signal.SIGALRM)
@@ -86,6 +88,7 @@ class Known:
         own = {test for line in mutant.lines for test in lines.get(line, ())}
         used = {test for tests in lines.values() for test in tests} if "" in own else own
         files = {file_of(test) for test in (used - {""} or self.seconds if own else ())}
+        files |= {LIMITS} if "" in own else set()
         room = mutant.path.split("/")[1]
         times: dict[str, list[float]] = defaultdict(list)
         for test in own - {""} or self.seconds:

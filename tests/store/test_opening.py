@@ -10,7 +10,7 @@ import pytest
 
 import affcli.store
 from affcli.errors import DatabaseError
-from affcli.store import check, database_info, open_store, run_sql, upgrade
+from affcli.store import check, database_info, open_store, opening, run_sql, upgrade
 from affcli.store.database_file import REVISION
 from affcli.store.journal import journal_mode_for
 from affcli.store.waiting import ATTEMPT
@@ -56,6 +56,16 @@ def refused(way: Way, path: Path, words: str) -> None:
 def test_a_missing_file_is_not_made_by_reading(way: Way, tmp_path: Path) -> None:
     with pytest.raises(DatabaseError, match="no database there; `affcli learn` makes one"):
         way(tmp_path / "none.db")
+    assert not names_in(tmp_path)
+
+
+def test_a_file_that_goes_while_it_is_opened_is_not_made_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is looked for first, and can go after that."""
+    monkeypatch.setattr(opening, "require_place", lambda *_, **__: None)
+    with pytest.raises(DatabaseError), open_store(tmp_path / "gone.db", create=False, write=True):
+        raise AssertionError
     assert not names_in(tmp_path)
 
 
