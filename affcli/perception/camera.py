@@ -53,12 +53,12 @@ class ImageSensor:
 
     def to_mm(self, pixels: Array) -> Array:
         """Return positions on the sensor (n, 2), mm, of pixels (n, 2)."""
-        centered: Array = (pixels - np.array(self.center_px)) * self.pitch_mm
+        centered: Array = (pixels - self.center_px) * self.pitch_mm
         return centered
 
     def to_px(self, positions: Array) -> Array:
         """Return pixels (n, 2) of positions on the sensor (n, 2), mm."""
-        pixels: Array = positions / self.pitch_mm + np.array(self.center_px)
+        pixels: Array = positions / self.pitch_mm + self.center_px
         return pixels
 
 
@@ -127,15 +127,16 @@ class Camera:
             of the camera.
         """
         positions = self.sensor.to_mm(pixels)
-        squared = np.sum(positions**2, axis=1)[:, None]
-        undistorted = positions * (1.0 + self.distortion_per_mm2 * squared)
-        rays = np.column_stack([undistorted, np.full(len(pixels), self.focal_length_mm)])
+        squared = (positions**2).sum(axis=1, keepdims=True)
+        rays = np.empty((len(pixels), 3))
+        rays[:, :2] = positions * (1.0 + self.distortion_per_mm2 * squared)
+        rays[:, 2] = self.focal_length_mm
         rays = rays @ self._rotation
-        center = np.array(self.position)
+        x, y, z = self.position
         with np.errstate(divide="ignore", invalid="ignore"):
-            along = (height - center[2]) / rays[:, 2]
-        along = np.where(along > 0.0, along, np.nan)
-        met: Array = center[:2] + along[:, None] * rays[:, :2]
+            along = (height - z) / rays[:, 2]
+        along[~(along > 0.0)] = np.nan
+        met: Array = along[:, None] * rays[:, :2] + (x, y)
         return met
 
     def as_json(self) -> dict[str, Any]:
@@ -210,8 +211,11 @@ def distorted(undistorted: Array, kappa: float) -> Array:
         inside = ideal < turn * 2.0 / 3.0
         radius = np.minimum(ideal, 0.9 * turn)
     for _ in range(NEWTON_STEPS):
-        slope = 1.0 + 3.0 * kappa * radius**2
-        radius = radius - (radius * (1.0 + kappa * radius**2) - ideal) / slope
+        squared = radius**2
+        slope = 1.0 + 3.0 * kappa * squared
+        before, radius = radius, radius - (radius * (1.0 + kappa * squared) - ideal) / slope
+        if np.array_equal(before, radius):
+            break
     scale = np.divide(radius, ideal, out=np.ones_like(ideal), where=ideal > 0.0)
     return np.where(inside[:, None], undistorted * scale[:, None], np.nan)
 

@@ -19,7 +19,7 @@ from affcli.perception.location import Locator
 from affcli.perception.markers import Pattern, find_markers
 from affcli.perception.palette import MARKER_COLOR, table_palette
 from affcli.perception.rendering import Picture, Renderer
-from affcli.perception.segmentation import Segmenter
+from affcli.perception.segmentation import Segmentation, Segmenter
 from affcli.perception.solids import circle
 
 # A picture is small: handing its parts to threads takes longer, and workers share the cores.
@@ -51,6 +51,14 @@ class Eye:
     calibration: Calibration
     segmenter: Segmenter
     locator: Locator
+
+    def look(self, scene: Scene, rng: np.random.Generator) -> Segmentation:
+        """Return what a picture of a scene shows; `rng` decides the noise.
+
+        The same as `segmenter.segment(renderer.take(scene, rng))`, but for the parts of the picture
+        that have no colour.
+        """
+        return self.segmenter.segment_detail(self.renderer.take_detail(scene, rng))
 
 
 def power_up(
@@ -151,7 +159,7 @@ class CameraSensor:
         Raises:
             NotSeenError: attractor, wrist or tool is not in view, or one is seen twice.
         """
-        seen = self._eye.segmenter.segment(self._eye.renderer.take(self._look(), self._rng))
+        seen = self._eye.look(self._look(), self._rng)
         locator = self._eye.locator
         (x, y), color = locator.puck(seen)
         wrist = locator.wrist(seen)
@@ -169,6 +177,6 @@ class CameraSensor:
         scene = self._look()
         if scene.goal is None:
             raise LookupError("there is no goal region on the table")
-        seen = self._eye.segmenter.segment(self._eye.renderer.take(scene, self._rng))
+        seen = self._eye.look(scene, self._rng)
         center, half_width = self._eye.locator.goal(seen)
         return GoalRegion(scene.goal.name, center, half_width)

@@ -259,11 +259,12 @@ def _completed_centroid(
 def _centroid_of_polygon(corners: Array) -> tuple[float, float]:
     """Return the centroid of a polygon (n, 2)."""
     x, y = corners.T
-    cross = x * np.roll(y, -1) - np.roll(x, -1) * y
-    area = 3.0 * float(np.sum(cross))
+    next_x, next_y = np.concatenate([corners[1:], corners[:1]]).T
+    cross = x * next_y - next_x * y
+    area = 3.0 * float(cross.sum())
     return (
-        float(np.sum((x + np.roll(x, -1)) * cross)) / area,
-        float(np.sum((y + np.roll(y, -1)) * cross)) / area,
+        float(((x + next_x) * cross).sum()) / area,
+        float(((y + next_y) * cross).sum()) / area,
     )
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from affcli.core.tool import Color
 from affcli.perception.palette import LEAST_SATURATION, LEAST_VALUE, ColorClass, class_of_hue
-from affcli.perception.rendering import Picture
+from affcli.perception.rendering import Detail, Picture
 
 NO_CLASS = 255
 """The label of a pixel that belongs to no class."""
@@ -43,16 +43,21 @@ class Segmentation:
     """What a picture shows, class by class.
 
     Args:
-        picture: that was segmented.
+        detail: the part of the picture that was segmented; all else has no class.
         classes: what was looked for.
         labels: (height, width), 8 bits: the position of each pixel's class, or `NO_CLASS`.
         blobs: for each class its blobs of at least `SMALLEST_BLOB` pixels, largest first.
     """
 
-    picture: Picture
+    detail: Detail
     classes: tuple[ColorClass, ...]
     labels: NDArray[np.uint8]
     blobs: tuple[tuple[Blob, ...], ...]
+
+    @property
+    def picture(self) -> Picture:
+        """That was segmented: the whole, unless it was a detail."""
+        return self.detail.picture
 
     def mask(self, position: int, blob: Blob) -> NDArray[np.uint8]:
         """Return the pixels of a class within the bounding box of a blob: 255, and 0 elsewhere."""
@@ -67,7 +72,8 @@ class Segmentation:
         """
         mask = self.mask(position, blob)
         inner = cv2.erode(mask, np.ones((3, 3), np.uint8), borderValue=0)
-        picture = self.picture[blob.top :, blob.left :][: blob.height, : blob.width]
+        top, left = blob.top - self.detail.top, blob.left - self.detail.left
+        picture = self.picture[top : top + blob.height, left : left + blob.width]
         blue, green, red, _ = cv2.mean(picture, inner if cv2.countNonZero(inner) else mask)
         return Color((red, green, blue))
 
@@ -90,13 +96,22 @@ class Segmenter:
         Args:
             picture: (height, width, 3), 8 bits, blue green red.
         """
-        hsv = np.asarray(cv2.cvtColor(picture, cv2.COLOR_BGR2HSV_FULL), np.uint8)
+        height, width = picture.shape[:2]
+        return self.segment_detail(Detail(picture, 0, 0, width, height))
+
+    def segment_detail(self, detail: Detail) -> Segmentation:
+        """Return the same of a picture of which only the part that has colour is given."""
+        hsv = np.asarray(cv2.cvtColor(detail.picture, cv2.COLOR_BGR2HSV_FULL), np.uint8)
         colored = colored_pixels(hsv)
         classes = cv2.LUT(cv2.extractChannel(hsv, 0), self._class_of_hue)
-        labels = np.asarray(cv2.bitwise_or(classes, cv2.bitwise_not(colored)), np.uint8)
-        region = cv2.boundingRect(colored)
+        labels = np.full((detail.height, detail.width), NO_CLASS, np.uint8)
+        height, width = colored.shape
+        part = labels[detail.top : detail.top + height, detail.left : detail.left + width]
+        cv2.bitwise_or(classes, cv2.bitwise_not(colored), dst=part)
+        left, top, width, height = cv2.boundingRect(colored)
+        region = left + detail.left, top + detail.top, width, height
         blobs = tuple(blobs_of(labels, k, region) for k in range(len(self.classes)))
-        return Segmentation(picture, self.classes, labels, blobs)
+        return Segmentation(detail, self.classes, labels, blobs)
 
 
 def colored_pixels(hsv: Picture) -> NDArray[np.uint8]:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -19,6 +20,8 @@ WRIST_MARKER_RADIUS = 0.75
 """Of the coloured disc on the flange (in). The paper only says that the wrist is colour-coded."""
 CIRCLE_POINTS = 48
 """A circle is drawn with this many corners: less than 0.004 in off for the puck."""
+ANGLES = 2.0 * np.pi * np.arange(CIRCLE_POINTS) / CIRCLE_POINTS
+UNIT_CIRCLE = np.column_stack([np.cos(ANGLES), np.sin(ANGLES)])
 LONGEST_EDGE = 1.0
 """Edges are cut into pieces of at most this (in), for the lens bends them."""
 
@@ -41,18 +44,23 @@ class Prism:
 
 def circle(center: Point, radius: float) -> Array:
     """Return the corners of a circle (CIRCLE_POINTS, 2)."""
-    angles = 2.0 * np.pi * np.arange(CIRCLE_POINTS) / CIRCLE_POINTS
-    return np.column_stack([center.x + radius * np.cos(angles), center.y + radius * np.sin(angles)])
+    corners: Array = np.array(center) + radius * UNIT_CIRCLE
+    return corners
 
 
 def along_edges(polygon: ConvexPolygon) -> Array:
     """Return points along a polygon's edges (n, 2), at most `LONGEST_EDGE` apart."""
-    pieces = []
-    for a, b in polygon.edges:
-        count = max(1, math.ceil(math.dist(a, b) / LONGEST_EDGE))
-        share = np.arange(count)[:, None] / count
-        pieces.append((1.0 - share) * np.array(a) + share * np.array(b))
-    return np.concatenate(pieces)
+    counts = [max(1, math.ceil(math.dist(a, b) / LONGEST_EDGE)) for a, b in polygon.edges]
+    ends = np.array(polygon.edges).repeat(counts, axis=0)
+    share = _shares(*counts)
+    points: Array = (1.0 - share) * ends[:, 0] + share * ends[:, 1]
+    return points
+
+
+@lru_cache(maxsize=256)
+def _shares(*counts: int) -> Array:
+    """Return for edges in as many pieces how far along its edge each piece begins (n, 1)."""
+    return np.concatenate([np.arange(count) / count for count in counts])[:, None]
 
 
 def layers_of(scene: Scene, workspace: Workspace, camera: Camera) -> list[list[Prism]]:

@@ -1,6 +1,7 @@
 """Colour segmentation: robust to light and noise; what is missing or doubled has a name."""
 
 import colorsys
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -8,6 +9,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from affcli.core.geometry import Pose
+from affcli.core.scene import Scene
 from affcli.core.tool import Color
 from affcli.core.workspace import TaskLayout
 from affcli.errors import BadInputError, NotSeenError
@@ -32,6 +35,19 @@ CLASSES = table_palette(WORKSPACE, COLORS)
 SEGMENTER = Segmenter(CLASSES)
 PUCK = next(c for c in CLASSES if c.role is Role.OBJECT)
 components = st.floats(0.0, 255.0)
+GOALS = goal_regions(TaskLayout())
+NOTHING = scene((400.0, 300.0), (400.0, 300.0))
+LOOKS = {
+    "no goal": scene(),
+    "goal beside the tool": scene(goal=GOALS["1"]),
+    "goal under the tool": scene((0.0, 24.0), (-2.0, 12.0), "l-hook", GOALS["2"]),
+    "lifted": replace(scene(tool="stick"), lift=1.6),
+    "turned": replace(scene(tool="l-stick"), wrist=Pose(2.0, 14.0, 0.7)),
+    "at the edge of the picture": scene((-21.0, 36.0), (0.0, 12.0)),
+    "puck out of view": scene((400.0, 300.0)),
+    "all out of view": NOTHING,
+    "all but the goal out of view": scene((400.0, 300.0), (400.0, 300.0), goal=GOALS["3"]),
+}
 
 
 def blank() -> Picture:
@@ -154,3 +170,28 @@ def test_light_does_not_change_the_hue(color: tuple[float, float, float], light:
     dim = ColorClass("", Color(light * c for c in color), Role.OBJECT)
     assert hue_distance(one.hue, dim.hue) < 1e-6
     assert one.hue == pytest.approx(360.0 * colorsys.rgb_to_hsv(*(c / 255 for c in color))[0])
+
+
+@pytest.mark.parametrize(
+    ("noise", "blur", "least", "most"),
+    [(2.55, 0.5, 0.0, 0.5), (0.0, 0.0, 0.0, 0.5), (2.55, 20.0, 0.0, 1.0), (20.0, 0.5, 1.0, 1.0)],
+    ids=["as usual", "clear", "blurred", "so noisy that the bare table may have a colour"],
+)
+@pytest.mark.parametrize("look", LOOKS.values(), ids=LOOKS)
+def test_a_detail_shows_what_the_whole_picture_shows(
+    look: Scene, noise: float, blur: float, least: float, most: float
+) -> None:
+    """It leaves out nothing but pixels without a class; a detail too small would lose some."""
+    renderer = Renderer(CameraSettings(grey_noise=noise, blur_px=blur), WORKSPACE)
+    picture = renderer.take(look, np.random.default_rng(3))
+    detail = renderer.take_detail(look, np.random.default_rng(3))
+    height, width = detail.picture.shape[:2]
+    rows = slice(detail.top, detail.top + height)
+    columns = slice(detail.left, detail.left + width)
+    assert np.array_equal(detail.picture, picture[rows, columns])
+    assert least <= height * width / (480 * 640) <= (1.0 if look is NOTHING else most)
+    whole, part = SEGMENTER.segment(picture), SEGMENTER.segment_detail(detail)
+    assert np.array_equal(whole.labels, part.labels)
+    assert whole.blobs == part.blobs
+    for k, found in enumerate(whole.blobs):
+        assert [whole.color(k, blob) for blob in found] == [part.color(k, blob) for blob in found]
