@@ -213,9 +213,7 @@ def distorted(undistorted: Array, kappa: float) -> Array:
     for _ in range(NEWTON_STEPS):
         squared = radius**2
         slope = 1.0 + 3.0 * kappa * squared
-        before, radius = radius, radius - (radius * (1.0 + kappa * squared) - ideal) / slope
-        if np.array_equal(before, radius):
-            break
+        radius = radius - (radius * (1.0 + kappa * squared) - ideal) / slope
     scale = np.divide(radius, ideal, out=np.ones_like(ideal), where=ideal > 0.0)
     return np.where(inside[:, None], undistorted * scale[:, None], np.nan)
 

@@ -56,7 +56,9 @@ class Locator:
         """
         position, blob = the_one(seen, Role.OBJECT)
         place = self._middle(blob.x, blob.y)
-        hiding = [k for k, one in enumerate(seen.classes) if one.role in (Role.TOOL, Role.WRIST)]
+        over = [k for k, one in enumerate(seen.classes) if one.role in (Role.TOOL, Role.WRIST)]
+        hiding = np.zeros(256, np.uint8)
+        hiding[over] = 255
         for _ in range(COMPLETIONS):
             outline = self._outline(place)
             x, y, hidden = _completed_centroid(seen.labels, position, hiding, outline, blob)
@@ -221,14 +223,18 @@ def only_blob(one: ColorClass, blobs: tuple[Blob, ...]) -> Blob:
 
 
 def _completed_centroid(
-    labels: NDArray[np.uint8], position: int, hiding: list[int], outline: Array, blob: Blob
+    labels: NDArray[np.uint8],
+    position: int,
+    hiding: NDArray[np.uint8],
+    outline: Array,
+    blob: Blob,
 ) -> tuple[float, float, int]:
     """Return the centroid (px) of a class's pixels and of those that hide it inside an outline.
 
     Args:
         labels: of all pixels.
         position: the class.
-        hiding: the classes that may hide it.
+        hiding: (256,), 255 for the classes that may hide it, 0 for the others.
         outline: where it is thought to be (n, 2), px.
         blob: its pixels that are seen.
 
@@ -244,9 +250,7 @@ def _completed_centroid(
     region = labels[top:bottom, left:right]
     inside = np.zeros(region.shape, np.uint8)
     cv2.fillConvexPoly(inside, np.rint(outline - (left, top)).astype(np.int32), 255)
-    covering = np.zeros(256, np.uint8)
-    covering[hiding] = 255
-    hidden = cv2.bitwise_and(cv2.LUT(region, covering), inside)
+    hidden = cv2.bitwise_and(cv2.LUT(region, hiding), inside)
     whole = cv2.bitwise_or(hidden, cv2.inRange(region, (position,), (position,)))
     moments = cv2.moments(whole, binaryImage=True)
     return (

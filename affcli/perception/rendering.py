@@ -3,6 +3,7 @@
 Pictures are OpenCV's: (height, width, 3), 8 bits, blue green red.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -157,19 +158,22 @@ class Renderer:
         """
         layers = layers_of(scene, self._workspace, self._camera)
         corners, starts = self._corners([prism for layer in layers for prism in layer])
-        region = self._region(corners[np.isfinite(corners).all(axis=1)])
+        seen = corners[np.isfinite(corners).all(axis=1)]
+        region = self._region(*seen.min(axis=0), *seen.max(axis=0)) if len(seen) else None
         if region is None:
             return None
         corner = np.array([region[1].start, region[0].start])
         rough = corners.astype(np.float32)
         tops, hulls = _fixed(corners - corner), _fixed(rough - corner)
         shapes: list[list[_Shape]] = []
-        pieces = iter([slice(*ends) for ends in pairwise(starts)])
+        ends = [f.reduceat(corners, starts[:-1]).tolist() for f in (np.minimum, np.maximum)]
+        pieces = zip(pairwise(starts), *ends, strict=True)
         for layer in layers:
             shapes.append([])
-            for prism, piece in zip(layer, islice(pieces, len(layer)), strict=True):
-                box = self._region(corners[piece])
+            for prism, (rows, low, high) in zip(layer, islice(pieces, len(layer)), strict=True):
+                box = self._region(*low, *high)
                 if box is not None:
+                    piece = slice(*rows)
                     hull = cv2.convexHull(rough[piece], returnPoints=False)[:, 0]
                     top = tops[piece][len(prism.outline) :]
                     box = within(region, box)
@@ -219,21 +223,17 @@ class Renderer:
             np.column_stack([outline, np.broadcast_to(height, len(outline))])
         )
 
-    def _region(self, pixels: Array) -> Region | None:
-        """Return the rows and columns around `pixels` that lie in the picture, None when none.
+    def _region(self, left: float, top: float, right: float, bottom: float) -> Region | None:
+        """Return the rows and columns around things that lie in the picture, None when none.
 
-        None, too, when one of them is behind the camera.
+        None, too, when one of the ends (px) is NaN: it is behind the camera.
         """
-        if not (len(pixels) and np.isfinite(pixels).all()):
+        if math.isnan(left + top + right + bottom):
             return None
         width, height = self._size
-        low = np.floor(pixels.min(axis=0)).astype(int) - MARGIN
-        high = np.ceil(pixels.max(axis=0)).astype(int) + MARGIN + 1
-        left, top = max(0, int(low[0])), max(0, int(low[1]))
-        right, bottom = min(width, int(high[0])), min(height, int(high[1]))
-        if left >= right or top >= bottom:
-            return None
-        return slice(top, bottom), slice(left, right)
+        first, last = max(0, math.floor(left) - MARGIN), min(width, math.ceil(right) + MARGIN + 1)
+        upper, lower = max(0, math.floor(top) - MARGIN), min(height, math.ceil(bottom) + MARGIN + 1)
+        return (slice(upper, lower), slice(first, last)) if first < last and upper < lower else None
 
     def _table(self, goal: GoalRegion | None) -> Table:
         """Return the table without tool and puck; made once a goal."""

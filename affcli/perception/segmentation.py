@@ -110,7 +110,11 @@ class Segmenter:
         cv2.bitwise_or(classes, cv2.bitwise_not(colored), dst=part)
         left, top, width, height = cv2.boundingRect(colored)
         region = left + detail.left, top + detail.top, width, height
-        blobs = tuple(blobs_of(labels, k, region) for k in range(len(self.classes)))
+        counts = cv2.calcHist([part], [0], None, [256], [0, 256]).ravel()[: len(self.classes)]
+        blobs = tuple(
+            blobs_of(labels, k, region) if count >= SMALLEST_BLOB else ()
+            for k, count in enumerate(counts.tolist())
+        )
         return Segmentation(detail, self.classes, labels, blobs)
 
 
@@ -146,11 +150,12 @@ def blobs_of(
     mask = mask[inner_top : inner_top + height, inner_left : inner_left + width]
     _, _, stats, centers = cv2.connectedComponentsWithStats(mask, connectivity=4)
     left, top = left + inner_left, top + inner_top
-    large = 1 + np.flatnonzero(stats[1:, cv2.CC_STAT_AREA] >= least)
+    # The first is all that is not of the class.
     found = [
         Blob(x + left, y + top, area, x0 + left, y0 + top, w, h)
         for (x0, y0, w, h, area), (x, y) in zip(
-            stats[large].tolist(), centers[large].tolist(), strict=True
+            stats[1:].tolist(), centers[1:].tolist(), strict=True
         )
+        if area >= least
     ]
     return tuple(sorted(found, key=lambda blob: -blob.area))
