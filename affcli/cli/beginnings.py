@@ -140,7 +140,7 @@ class Planner:
 
     def choose(self, situation: Situation) -> Choice:
         """Return which row to use now, by its position in situation.table, and the reasons; None
-        when no row is left.
+        ends the trial: as `no plan found`, or as `no row left` where none can be used.
         """
         found = self.candidates(situation)
         reasons = (Reason("usable", len(found)),)  # shown by --explain; any words and numbers

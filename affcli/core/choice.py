@@ -117,7 +117,7 @@ class Choice(NamedTuple):
     """What a planner answers.
 
     Args:
-        position: of the row chosen in the table; None when no row is left.
+        position: of the row chosen in the table; None when it chooses none.
         reasons: what it went by, an open list; the first with moves is the plan that it follows,
             the others are those that came close.
     """

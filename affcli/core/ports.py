@@ -137,7 +137,9 @@ class Planner(Protocol):
         """A row is out of consideration at this replication probability or below."""
 
     def choose(self, situation: Situation) -> Choice:
-        """Return the row to use, with the reasons; no row when none is left."""
+        """Return the row to use, with the reasons; or none, which ends the trial: with the outcome
+        `no plan found` while rows can be used, else with `no row left`.
+        """
 
     def candidates(self, situation: Situation) -> tuple[Candidate, ...]:
         """Return the rows that came closest, the one chosen first; to be looked at."""

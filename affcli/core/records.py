@@ -181,7 +181,7 @@ class TrialInfo:
         outcome: how it ended; None while running or when interrupted.
         steps: how many steps were taken; None as `outcome`.
         robot_seconds: how long it took; None as `outcome`.
-        last_reasons: what the planner went by when it found no row, else None.
+        last_reasons: as in `TrialEnd`.
     """
 
     id: int

@@ -19,10 +19,19 @@ class Truth(NamedTuple):
 
 
 class Outcome(StrEnum):
-    """How a testing trial ended."""
+    """How a testing trial ended.
+
+    Where a planner chooses no row, the procedure looks whether one could be used: a row of the
+    colours seen, of a probability above the planner's threshold, whose wrist position is within
+    reach (`affcli.planning.nested_query.usable_rows`). What the planner is does not matter.
+    """
 
     SOLVED = "solved"
     NO_ROW = "no row left"
+    """No row could be used, so that none was chosen. The paper's query fails so, and no other way.
+    In records from before schema revision 0010 it stands for `NO_PLAN` too."""
+    NO_PLAN = "no plan found"
+    """Rows could be used, but the planner chose none of them."""
     ATTRACTOR_OUT_OF_REACH = "attractor out of reach"
     STEP_LIMIT = "step limit"
     INVALID = "invalid"
@@ -31,6 +40,15 @@ class Outcome(StrEnum):
 
 DIVERGED = "the simulation gave a number that is not finite"
 """Why a trial is invalid that no part of another package ended."""
+
+
+def named_before(outcome: str | None) -> str | None:
+    """Return the name of an outcome before schema revision 0010: `no row left` for `no plan found`.
+
+    By it a record from before is held against what comes out now. It says no more: which of the two
+    it was cannot be read from the reasons that a planner of another package gave.
+    """
+    return Outcome.NO_ROW if outcome == Outcome.NO_PLAN else outcome
 
 
 def is_counted(outcome: Outcome | None) -> bool:
@@ -114,8 +132,8 @@ class TrialEnd:
         outcome: how it ended.
         steps: how many steps were taken.
         clock: robot seconds it took.
-        last_reasons: what the planner went by at the query that found no row; of an invalid trial
-            which part of another package failed, and how; else None.
+        last_reasons: what the planner went by when it chose no row; of an invalid trial which part
+            of another package failed, and how; else None.
     """
 
     outcome: Outcome

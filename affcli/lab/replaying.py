@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from itertools import islice
 
 import numpy as np
@@ -16,7 +17,7 @@ from affcli.core.records import LearningRunInfo
 from affcli.core.replay import Considered, Difference, Replay, ReplayedBehavior, ReplayedStep
 from affcli.core.scene import Scene
 from affcli.core.specs import Counters
-from affcli.core.trial import TrialStep
+from affcli.core.trial import Outcome, TrialEnd, TrialStep, named_before
 from affcli.core.world import Setting, World
 from affcli.errors import UsageError
 from affcli.lab.believing import TOLD
@@ -74,6 +75,9 @@ class _Onlooker:
 def replay_trial(store: Store, trial_id: int) -> Replay:
     """Do a stored trial again, from its spec and the table it began with.
 
+    A trial recorded as `no row left` that ends with `no plan found` now equals its record, and has
+    the name that stands there: before schema revision 0010 there was no other.
+
     Args:
         store: open.
         trial_id: its number.
@@ -114,12 +118,17 @@ def replay_trial(store: Store, trial_id: int) -> Replay:
         scenes = onlooker.reel.cut() or (_scene(setting),)
         opening, filmed = (opening if filmed else scenes[0]), True
         steps.append(_replayed(TrialStep(record, truth, judged), onlooker, scenes))
-    end = running.end if trial.outcome is not None else None
+    end = None if trial.outcome is None else _by_its_record(running.end, trial.outcome)
     differences = store.trials.differences(trial_id, [one.step for one in steps], end, ids)
     return Replay(
         *(trial_id, trial.run_id, spec, settings_of(learned).workspace),
         *(opening, tuple(steps), end, differences),
     )
+
+
+def _by_its_record(end: TrialEnd, recorded: Outcome) -> TrialEnd:
+    """Return an end by the name that its record has for it, where that is from before."""
+    return replace(end, outcome=recorded) if recorded == named_before(end.outcome) else end
 
 
 def _require_replays(world: World) -> None:

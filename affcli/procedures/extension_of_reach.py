@@ -12,6 +12,7 @@ from affcli.core.ports import Experimenter, Planner, Robot, Sensor, can_slide
 from affcli.core.setting import setting
 from affcli.core.trial import Outcome, StepRecord, TrialEnd
 from affcli.errors import PartFailedError, SimulationDivergedError
+from affcli.planning.nested_query import usable_rows
 from affcli.procedures.attempt import attempt
 
 
@@ -90,12 +91,14 @@ def _step(
     goal: Goal,
     planner: Planner,
 ) -> StepRecord | TrialEnd:
-    """Choose a row, try it, judge it, count it; or end the trial when no row is left."""
+    """Choose a row, try it, judge it, count it; or end the trial when none is chosen."""
     slides = robot.slides if can_slide(robot) else None
     situation = Situation(table, seen, goal, robot.wrist, robot.reaches, robot.holding, slides)
     choice = planner.choose(situation)
     if choice.position is None:
-        return TrialEnd(Outcome.NO_ROW, number - 1, robot.clock, choice.reasons)
+        _, usable, _ = usable_rows(situation, planner.threshold)
+        outcome = Outcome.NO_PLAN if len(usable) else Outcome.NO_ROW
+        return TrialEnd(outcome, number - 1, robot.clock, choice.reasons)
     use = attempt(
         robot,
         sensor,

@@ -48,7 +48,7 @@ def explain_trial(spec: TrialSpec, end: TrialEnd, steps: Steps) -> RenderableTyp
         lines += [_indented(4, line) for line in step_lines(step, spec.task.goal)]
     if end.failure:
         lines.append(_indented(2, one_line(end.failure, 500)))
-    elif end.last_reasons is not None:
+    elif end.last_reasons:
         lines.append(_indented(2, reasons_words(end.last_reasons, chosen=False)))
     return Group(*lines, "")
 

@@ -19,7 +19,7 @@ from affcli.store.waiting import Waiting, connected
 APPLICATION_ID = int.from_bytes(b"affc", "big")
 """``PRAGMA application_id`` of affcli's databases."""
 
-REVISION = "0009"
+REVISION = "0010"
 """The revision of ``migrations/`` that this code reads and writes."""
 
 RELATIONS = frozenset({*COLUMNS, "affordance_table", "affordance_wide"})

@@ -10,6 +10,7 @@ from typing import Any
 import sqlalchemy as sa
 
 from affcli.core.specs import REPRODUCE
+from affcli.core.trial import named_before
 from affcli.errors import DatabaseError, UsageError, one_line
 from affcli.store.columns import COLUMNS
 from affcli.store.connection import insert_many, insert_one, mappings, tuples
@@ -37,8 +38,9 @@ from affcli.store.tables import (
 )
 
 RUN_SUMS = ("behaviors", "rows", "resets", "redraws", "robot_seconds")
-TRIAL_SUMS = ("protocol", "tool", "planner", "outcome", "steps", "robot_seconds")
-"""What two records of one run, or of one trial, must have alike: the rest follows from them."""
+TRIAL_SUMS = ("protocol", "tool", "planner", "steps", "robot_seconds")
+"""What two records of one run, or of one trial, must have alike, beside the outcome: the rest
+follows from them."""
 LEFT_OUT = {
     "learning runs of affcli learn and import": sa.select(learning_run).where(
         learning_run.c.session_id.is_(None)
@@ -135,7 +137,11 @@ class _Life:
             *(
                 (
                     f"its trial with the {row['shape']} at goal {row['goal']} from {row['start']}",
-                    [self.condition(row), *(row[name] for name in TRIAL_SUMS)],
+                    [
+                        self.condition(row),
+                        named_before(row["outcome"]),
+                        *(row[name] for name in TRIAL_SUMS),
+                    ],
                 )
                 for row in self.trials()
             ),

@@ -240,6 +240,7 @@ def test_the_procedure_ends_where_the_trial_did(
 ) -> None:
     """Over the goal, out of reach, without a row; a robot that ran out of steps is in no box."""
     boxes = {"solved": ["over"], "attractor out of reach": ["reach"], "no row left": ["s4"]}
+    boxes["no plan found"] = ["choose"]
     query = "SELECT outcome, min(id) FROM trial WHERE robot = 0 GROUP BY outcome"
     found = rows(many_database, query)
     assert len(found) >= 2

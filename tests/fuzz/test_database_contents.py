@@ -21,7 +21,8 @@ INTEGERS = (0, 1, -1, 2, 3, 5, 9, 100, 2**31, 2**53 + 1, 2**63 - 1, -(2**63))
 REALS = (0.5, -0.5, 1e-300, 1e6, 1e7, 1e300, -1e300, float("inf"), float("-inf"), 2.5, -12.25)
 TEXTS = (
     *("", "x", "1", "nan", "t-hook", "stick", "l-hook", "done", "running", "solve", "reproduce"),
-    *("break-tool", "stored", "as learned", "solved", "no row left", "invalid", "blocked"),
+    *("break-tool", "stored", "as learned", "solved", "no row left", "no plan found", "invalid"),
+    "blocked",
     *("tool adaptation", "extension of reach", "noisy", "camera", "exact", "grasp", "extend arm"),
     *("position wrist", "\x1b[31m", "a\nb", "[/]", "<script>x</script>", "=1+1", "x" * 20_000),
     *("{}", "[]", "null", "1", '"x"', "{", "[" * 5_000, "NaN", '{"a": NaN}', '{"sensor": 1}'),

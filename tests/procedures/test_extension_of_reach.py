@@ -1,7 +1,7 @@
 """The procedure that solves a tool task, against a table without physics (§6.2, §7)."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import pytest
 from hypothesis import given, settings
@@ -10,12 +10,15 @@ from hypothesis import strategies as st
 from affcli.core.affordance import Affordance, replicates
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.behavior import POSITION_WRIST, BehaviorCall, ExecutionStatus
+from affcli.core.choice import Choice, Situation
 from affcli.core.geometry import Point
 from affcli.core.observation import movement
+from affcli.core.ports import Planner
 from affcli.core.task import GoalRegion
 from affcli.core.tool import ToolName
 from affcli.core.trial import Outcome, StepRecord, TrialEnd
 from affcli.errors import SimulationDivergedError
+from affcli.planning.lookahead import Lookahead
 from affcli.planning.nested_query import NestedQuery
 from affcli.procedures.extension_of_reach import TrialLimits, extension_of_reach
 from affcli.simulation.tools.paper import TOOL_COLORS
@@ -50,6 +53,7 @@ class Trial:
     reachable: Callable[[Point], bool] = everywhere
     lost: Callable[[Point], bool] = nowhere
     max_steps: int = 32
+    planner: Planner = NestedQuery()  # noqa: RUF009 it is frozen
     steps: list[StepRecord] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -62,7 +66,7 @@ class Trial:
         limits = TrialLimits(max_steps=self.max_steps)
         running = extension_of_reach(
             *(self.robot, self.sensor, experimenter, self.table, BINDING, limits),
-            planner=NestedQuery(),
+            planner=self.planner,
         )
         while True:
             try:
@@ -80,6 +84,14 @@ class Trial:
 def rows_left(end: TrialEnd) -> tuple[int | None, ...]:
     """Return how many rows each search left, at the query that found none."""
     return tuple(reason.rows for reason in end.last_reasons or ())
+
+
+@dataclass(frozen=True)
+class Undecided(NestedQuery):
+    """A planner that finds no plan: it looks as the paper's does, and never chooses."""
+
+    def choose(self, situation: Situation) -> Choice:
+        return Choice(None, super().choose(situation).reasons)
 
 
 def diverging_after(behaviors: int) -> Effect:
@@ -142,6 +154,55 @@ def test_without_a_row_the_trial_ends_and_says_which_search_left_none(
 def test_a_blank_table_solves_nothing() -> None:
     trial = Trial(AffordanceTable())
     assert (trial.end.outcome, rows_left(trial.end)) == (Outcome.NO_ROW, (0, 0, 0, 0))
+
+
+def test_a_planner_that_chooses_none_of_the_usable_rows_has_found_no_plan() -> None:
+    trial = Trial(table_of(AHEAD_5), planner=Undecided())
+    assert trial.end == TrialEnd(Outcome.NO_PLAN, 0, CALL_SECONDS, trial.end.last_reasons)
+    assert rows_left(trial.end) == (1, 1, 1, 1)
+    assert trial.robot.calls == [BINDING]
+
+
+@pytest.mark.parametrize(
+    ("row", "reachable", "usable"),
+    [
+        (affordance(tool_color=TOOL_COLORS[ToolName("stick")]), everywhere, False),
+        (affordance(used=2, successful=1), everywhere, False),
+        (AHEAD_5, nowhere, False),
+        (AHEAD_5, lambda place: place != Point(0.0, 16.0), False),
+        (AHEAD_5, lambda place: place == Point(0.0, 16.0), True),
+        (affordance(used=5, successful=3), everywhere, True),
+    ],
+    ids=["another tool", "dead", "nowhere", "not its place", "its place alone", "not yet dead"],
+)
+def test_whatever_the_planner_is_no_row_is_left_where_none_can_be_used(
+    row: Affordance, reachable: Callable[[Point], bool], *, usable: bool
+) -> None:
+    """The procedure looks for itself: by what it tells of the reason a planner is not believed."""
+    trial = Trial(table_of(row), planner=Undecided(), reachable=reachable)
+    assert trial.end.outcome is (Outcome.NO_PLAN if usable else Outcome.NO_ROW)
+
+
+@pytest.mark.parametrize(("threshold", "outcome"), [(0.5, "no plan found"), (0.6, "no row left")])
+def test_which_rows_can_be_used_goes_by_the_planner_s_own_threshold(
+    threshold: float, outcome: str
+) -> None:
+    row = affordance(used=5, successful=3)
+    trial = Trial(table_of(row), planner=Undecided(threshold=threshold))
+    assert trial.end.outcome == outcome
+
+
+def test_a_lookahead_that_expects_of_every_row_within_reach_no_movement_finds_no_plan() -> None:
+    """The wrist can be set down, but the way of the behavior ends there."""
+    row = replace(AHEAD_5, travel=Point(0.0, 5.0))
+    trial = Trial(
+        table_of(row), planner=Lookahead(), reachable=lambda place: place == Point(0.0, 16.0)
+    )
+    assert trial.end.outcome is Outcome.NO_PLAN
+    assert [(reason.name, reason.rows) for reason in trial.end.last_reasons or ()] == [
+        *(("consistent", 1), ("probable", 1), ("reachable", 1)),
+        ("expected to move the attractor", 0),
+    ]
 
 
 def test_an_attractor_out_of_the_tools_reach_ends_the_trial() -> None:
@@ -327,6 +388,7 @@ def test_the_end_of_a_trial_says_how_far_it_came(drawn: tuple[list[Affordance], 
     clocks = [step.clock for step in trial.steps]
     assert clocks == sorted(set(clocks))
     assert (trial.end.last_reasons is None) is (trial.end.outcome is not Outcome.NO_ROW)
+    assert trial.end.outcome is not Outcome.NO_PLAN  # the paper's query takes what can be used
 
 
 def test_the_tool_is_grasped_once_before_the_first_look() -> None:

@@ -69,7 +69,9 @@ def test_trials_whose_simulation_failed_count_for_nothing() -> None:
     assert value["broken"]["trials"] == 2
     assert drawn(broken_tables(RUNS[0], [failed]), 80)
     ends = {Outcome.STEP_LIMIT: 2, Outcome.NO_ROW: 3, Outcome.INVALID: 4, Outcome.SOLVED: 5}
-    assert failures_in(ends) == ({"no row left": 3, "step limit": 2}, 10, 4)
+    ends[Outcome.NO_PLAN] = 1
+    kinds = {"no row left": 3, "step limit": 2, "no plan found": 1}
+    assert failures_in(ends) == (kinds, 11, 4)
     assert failures_in({Outcome.INVALID: 4}) == ({}, 0, 4)
     outcomes = (Outcome.SOLVED, Outcome.INVALID, Outcome.NO_ROW)
     shape, protocol = "l-hook", Protocol.TOOL_ADAPTATION

@@ -11,13 +11,14 @@ from hypothesis import strategies as st
 
 from affcli.analysis.paper import EXTENSION_OF_REACH
 from affcli.core.affordance import Affordance
+from affcli.core.identity import Component
 from affcli.core.replay import Difference, Replay
 from affcli.core.task import Task
 from affcli.core.tool import ToolName
 from affcli.core.trial import Outcome
 from affcli.report.page import answers
 from affcli.report.page.content import Broken
-from affcli.report.page.rendering import render
+from affcli.report.page.rendering import KINDS, render
 from tests.report.hand_made import FOUR_ROBOTS, MANY_ROBOTS, session_of, spec, step
 from tests.report.hand_made_page import (
     BROKEN,
@@ -245,6 +246,11 @@ def test_how_trials_failed_is_said_in_words() -> None:
     assert "no row left" in failures
     assert "every row was excluded, or asks for a place out of the arm&#39;s reach" in failures
     assert "<td>1</td><td>25.0 %</td>" in failures
+    unplanned = replay(spec(1, planner=Component("lookahead")), Outcome.NO_PLAN, number=7)
+    failures = render(content(replays=[unplanned]), COMMAND).split("How trials failed")[1]
+    assert "no plan found" in failures
+    assert "rows could be used, but the planner chose none of them" in failures
+    assert KINDS.keys() == set(Outcome) - {Outcome.SOLVED, Outcome.INVALID}
 
 
 def test_one_robot_s_trials_at_other_tasks_stand_in_a_row_of_their_own() -> None:

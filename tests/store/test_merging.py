@@ -155,6 +155,25 @@ def test_what_contradicts_is_refused_and_nothing_changed(
     assert contents(path) == before
 
 
+def test_a_record_by_the_name_of_before_is_of_the_same_robot(
+    shards: list[Path], tmp_path: Path
+) -> None:
+    """`no row left` was the name of `no plan found`, too; what is there already stays."""
+    older, newer, path = (tmp_path / name for name in ("older.db", "newer.db", "all.db"))
+    for one, outcome in ((older, "no row left"), (newer, "no plan found")):
+        one.write_bytes(shards[1].read_bytes())
+        altered(one, f"UPDATE trial SET outcome = '{outcome}' WHERE id = 3")
+    for first, second in ((older, newer), (newer, older)):
+        path.unlink(missing_ok=True)
+        merge([first], path, NOW)
+        before = contents(path)
+        assert merge([second], path, NOW) == Merged(0, 1, {})
+        assert contents(path) == before
+    altered(older, "UPDATE trial SET outcome = 'step limit' WHERE id = 3")
+    with pytest.raises(DatabaseError, match=r"its trial with the .* differs"):
+        merge([older], path, NOW)
+
+
 @pytest.mark.parametrize("lacks", ["source", "target"])
 @pytest.mark.parametrize("which", ["LIMIT 1 OFFSET 2", "DESC LIMIT 1"])
 def test_a_robot_that_lacks_a_trial_is_refused(

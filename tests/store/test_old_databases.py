@@ -17,6 +17,7 @@ from affcli.core.choice import Reason
 from affcli.core.identity import Component
 from affcli.core.records import ChangedPart
 from affcli.core.specs import LearningSpec
+from affcli.core.trial import Outcome
 from affcli.core.workspace import TaskLayout
 from affcli.errors import BadInputError
 from affcli.lab.learning import learn
@@ -66,6 +67,12 @@ LEARNED: dict[str, tuple[tuple[str, tuple[str, ...], tuple[str, int, int]], ...]
         ("l-stick", (), ("noisy", 7, 24)),
     ),
     "0008": (
+        ("t-hook", ("trial.max_steps=5",), ("noisy", 5, 60)),
+        ("l-hook", (), ("noisy", 2, 16)),
+        ("stick", (), ("camera", 5, 3)),
+        ("l-stick", (), ("noisy", 7, 24)),
+    ),
+    "0009": (
         ("t-hook", ("trial.max_steps=5",), ("noisy", 5, 60)),
         ("l-hook", (), ("noisy", 2, 16)),
         ("stick", (), ("camera", 5, 3)),
@@ -230,7 +237,7 @@ def test_trials_of_older_physics_are_not_replayed(stored: Store) -> None:
             replay_trial(stored, trial.id)
 
 
-@pytest.mark.parametrize("revision", ["0003", "0004", "0005", "0006", "0007", "0008"])
+@pytest.mark.parametrize("revision", [f"{k:04}" for k in range(3, int(REVISION))])
 def test_an_interrupted_run_of_older_physics_is_not_gone_on_with(
     revision: str, tmp_path: Path
 ) -> None:
@@ -291,3 +298,57 @@ def test_numbers_come_back_exactly(stored: Store) -> None:
         assert (key, json.loads(str(text))) == (own.key, own.canonical())
     starts = run_sql(stored.path, "SELECT DISTINCT start_x, start_y FROM trial").rows
     assert set(starts) == {task.start for task in extension_of_reach(TaskLayout())}
+
+
+@pytest.fixture
+def without_plan(tmp_path: Path) -> Path:
+    """Two trials of revision 0009 that ended with `no row left`: of lookahead, which chose none of
+    three rows that could be used, and of the nested query, which had none.
+    """
+    return Path(shutil.copy(DATABASES / "no_plan_0009.db", tmp_path / "old.db"))
+
+
+def test_a_trial_that_no_plan_was_found_in_keeps_its_name_and_equals_its_record(
+    without_plan: Path,
+) -> None:
+    """What it is called now is no difference: before revision 0010 there was no other name."""
+    upgrade(without_plan)
+    with open_store(without_plan, create=False, write=False) as store:
+        for trial, planner in ((1, "lookahead"), (2, "nested-query")):
+            info, again = store.trials.trial(trial), replay_trial(store, trial)
+            assert str(info.spec.planner) == planner
+            assert info.outcome is again.outcome is Outcome.NO_ROW
+            assert again.end is not None
+            assert (again.end.outcome, again.end.last_reasons) == (info.outcome, info.last_reasons)
+            assert again.differences == ()
+
+
+@pytest.mark.parametrize(
+    ("trial", "outcome", "differs"),
+    [
+        (1, "no plan found", False),
+        (1, "step limit", True),
+        (2, "no plan found", True),
+        (2, "step limit", True),
+    ],
+)
+def test_any_other_end_than_the_recorded_is_a_difference(
+    without_plan: Path, trial: int, outcome: str, *, differs: bool
+) -> None:
+    upgrade(without_plan)
+    with closing(sqlite3.connect(without_plan, isolation_level=None)) as driver:
+        driver.execute("UPDATE trial SET outcome = ? WHERE id = ?", [outcome, trial])
+    with open_store(without_plan, create=False, write=False) as store:
+        again = replay_trial(store, trial)
+    found = [(d.number, d.column, d.stored) for d in again.differences]
+    assert found == [(0, "outcome", outcome)] * differs
+    assert again.outcome == outcome
+
+
+def test_no_trial_gets_the_number_of_a_deleted_one(without_plan: Path) -> None:
+    """The table is made anew, and the last number given stays."""
+    with closing(sqlite3.connect(without_plan, isolation_level=None)) as driver:
+        driver.execute("DELETE FROM step WHERE trial_id = 2")
+        driver.execute("DELETE FROM trial WHERE id = 2")
+    upgrade(without_plan)
+    assert rows(without_plan, "SELECT seq FROM sqlite_sequence WHERE name = 'trial'") == [(2,)]

@@ -3,6 +3,7 @@
 import sqlite3
 from contextlib import closing
 from dataclasses import replace
+from itertools import product
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -409,6 +410,23 @@ def test_invalid_trials_count_for_nothing(store: Store) -> None:
     (count,) = store.results.success_counts(session)
     assert (count.trials, count.solved) == (2, 1)
     assert [t.outcome for t in store.trials.trials()] == [*(t.end.outcome for t in ended), None]
+
+
+def test_a_trial_of_every_outcome_is_kept_and_of_no_other(store: Store) -> None:
+    """What the schema knows are the names that affcli has."""
+    run = learned(store)
+    _, ids = store.learning.table(run.id)
+    ended = [
+        trial_record(trial_spec(goal, start), (), outcome)
+        for (goal, start), outcome in zip(product((1, 2), (1, 2, 3, 4)), Outcome, strict=False)
+    ]
+    store.trials.save_all(begin_solving(store), run.id, ended, ids)
+    assert [trial.outcome for trial in store.trials.trials()] == list(Outcome)
+    with (
+        closing(sqlite3.connect(store.path)) as driver,
+        pytest.raises(sqlite3.IntegrityError, match="CHECK constraint failed: outcome"),
+    ):
+        driver.execute("UPDATE trial SET outcome = 'gave up'")
 
 
 def test_outcomes_can_be_narrowed(store: Store) -> None:

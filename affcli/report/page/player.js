@@ -12,7 +12,7 @@
   };
   const LIT = 140; // milliseconds that each box is lit for while a row is chosen, at 4x
   const COMPARED = 500; // and the last one, at the end of a step
-  const end = () => ({ solved: "over", "attractor out of reach": "reach", "no row left": searches().at(-1) })[trial.outcome]; // the box where a trial ends
+  const end = () => ({ solved: "over", "attractor out of reach": "reach", "no row left": searches().at(-1), "no plan found": searches().at(-1) })[trial.outcome]; // the box where a trial ends
   const SVG = "http://www.w3.org/2000/svg";
 
   /** Undo report/page/films.packed. */
@@ -231,7 +231,7 @@
   }
 
   function ending() {
-    const rows = trial.failure ? `; ${trial.failure}` : trial.left ? `; rows left: ${trial.left.join(", ")}` : "";
+    const rows = trial.failure ? `; ${trial.failure}` : trial.left?.length ? `; rows left: ${trial.left.join(", ")}` : "";
     return html("p", `The trial ended: ${trial.outcome}${rows}.`);
   }
 

@@ -47,6 +47,7 @@ HOME = "affcli.report.page"
 """Where template, style sheet and scripts lie."""
 KINDS = {
     Outcome.NO_ROW.value: "every row was excluded, or asks for a place out of the arm's reach",
+    Outcome.NO_PLAN.value: "rows could be used, but the planner chose none of them",
     Outcome.ATTRACTOR_OUT_OF_REACH.value: "the puck was pushed where the tool cannot reach it",
     Outcome.STEP_LIMIT.value: "still trying when its steps ran out; the paper names no limit",
 }
