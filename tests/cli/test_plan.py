@@ -1,10 +1,11 @@
 """Plans as they are kept and shown: explained, replayed, drawn; and with each command."""
 
+import shutil
 from pathlib import Path
 
 import pytest
 
-from tests.cli.program import done, refused, rows
+from tests.cli.program import affcli, done, refused, rows
 
 AHEAD = ("--planner", "lookahead:depth=2")
 
@@ -54,3 +55,44 @@ def test_a_broken_tool_is_used_with_a_planner_of_its_own(learned: Path) -> None:
     (result,) = done("break-tool", *AHEAD, "--json", "--db", learned).results
     assert result["planner"] == "lookahead"
     assert rows(learned, "SELECT DISTINCT planner FROM trial") == [("lookahead",)]
+
+
+WITHOUT = Path(__file__).parents[1] / "store" / "databases" / "no_plan_0009.db"
+"""A stick of five minutes whose lookahead found no plan, made when that was told as no row left."""
+
+
+def test_a_trial_in_which_no_plan_is_found_is_a_failure_of_its_own_kind(tmp_path: Path) -> None:
+    """Whatever lists failures names it; what stands there from before keeps its name."""
+    path = Path(shutil.copy(WITHOUT, tmp_path / "my.db"))
+    path.chmod(0o644)
+    done("db", "upgrade", "--db", path)
+    one = (
+        "--tool",
+        "stick",
+        "--goal",
+        "4",
+        "--start",
+        "1",
+        "--seed",
+        "1",
+        "--planner",
+        "lookahead",
+    )
+    ended = affcli("solve", *one, "--explain", "--db", path, COLUMNS="100")
+    assert ended.code == 1
+    assert "stick, goal 4, start 1, planner lookahead: no plan found (18 steps)" in ended.out
+    assert "  rows left: 7 consistent, 7 probable, 3 reachable, 0 expected to move the" in ended.out
+    (trial,) = affcli("solve", *one, "--explain", "--json", "--db", path).results
+    assert trial["outcome"] == "no plan found"
+    assert [reason["rows"] for reason in trial["reasons_at_end"]] == [7, 7, 3, 0]
+    (told,) = done("report", "--json", "--db", path).results
+    assert told["failures"] == {"no row left": 2, "no plan found": 2}
+    assert done("replay", "3", "--db", path).err.endswith(
+        "trial 3 ended: no plan found; the replay equals the record, all 18 steps\n"
+    )
+    assert done("replay", "1", "--db", path).err.endswith(
+        "trial 1 ended: no row left; the replay equals the record, all 18 steps\n"
+    )
+    assert done("replay", "--all", "--db", path).err == (
+        "4 of 4 trials equal their record in every step\n"
+    )

@@ -81,7 +81,7 @@ class _Places:
         for place in self._drawn(rng):
             if not GoalRegion("", place, half_width).contains(start):
                 return place
-        raise self._nowhere("a goal")
+        raise self._nowhere("a goal that its start is not over,", "make half_width smaller, or ")
 
     def _drawn(self, rng: np.random.Generator) -> Iterator[Point]:
         """Yield random places of the table (uniform) that some tool reaches, as long as it takes
@@ -93,10 +93,11 @@ class _Places:
             if any(touchable(one, self._reach, place, depth) for one in self._tools):
                 yield place
 
-    def _nowhere(self, what: str) -> BadInputError:
+    def _nowhere(self, what: str, or_else: str = "") -> BadInputError:
         return BadInputError(
             f"tasks {NAME}: no place for {what} that a tool reaches in {PLACEMENTS} tries: nobody "
-            "could do it; bring table.near, table.far and table.half_width closer to the arm"
+            f"could do it; {or_else}bring table.near, table.far and table.half_width closer to the "
+            "arm"
         )
 
 
