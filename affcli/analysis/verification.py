@@ -7,7 +7,7 @@ from typing import NamedTuple
 from affcli.analysis.statistics import exact_interval
 from affcli.core.behavior import BehaviorCall
 from affcli.core.specs import VerificationSpec
-from affcli.core.verification import ReplicationRecord
+from affcli.core.verification import Evidence, ReplicationRecord
 
 
 class JudgedTry(NamedTuple):
@@ -56,6 +56,11 @@ class Verification:
     def of_live_rows(self) -> list[JudgedTry]:
         """The tries of rows that a robot with a task would use."""
         return [one for one in self.tries if one.record.live]
+
+    @property
+    def borrowed(self) -> Evidence:
+        """What the tries of borrowed rows say, of those that a robot with a task would use."""
+        return Evidence.of(one for one in self.records if one.row.is_borrowed)
 
     @property
     def of_excluded_rows(self) -> list[JudgedTry]:

@@ -40,6 +40,7 @@ class VerificationResult(NamedTuple):
         live, failed: tries of rows that were not excluded; of these, not replicated.
         decided_after: after how many tries the verdict could be told; None if it could not.
         robot_seconds: how long it took; None when it was interrupted.
+        borrowed, borrowed_failed: how many of `live` and of `failed` are of borrowed rows.
     """
 
     id: int
@@ -52,6 +53,8 @@ class VerificationResult(NamedTuple):
     failed: int
     decided_after: int | None
     robot_seconds: float | None
+    borrowed: int = 0
+    borrowed_failed: int = 0
 
 
 @dataclass(frozen=True, slots=True)

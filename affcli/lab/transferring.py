@@ -146,8 +146,8 @@ def borrowed_from_store(
     What the cameras of these saw is kept from now on.
 
     Raises:
-        UsageError: a lender is not there, not finished, has no rows, or is of another kind; or
-            nothing carries over. The message says what to do.
+        UsageError: a lender is not there, not finished, has no rows, is of another kind, or of the
+            same tool; or nothing carries over. The message says what to do.
         NotSeenError: a camera does not see its tool.
     """
     if spec.transfer is None:
@@ -202,6 +202,11 @@ def _lender(store: Store, run: LearningRunInfo, spec: LearningSpec, tell: Tell) 
         raise UsageError(f"{place} comes from a log: no camera saw its {tool}; name another")
     if run.spec.explorer.name == TOLD:
         raise UsageError(f"{place} is no robot's: its table was computed; name one that learned")
+    if run.spec.held == spec.held:
+        raise UsageError(
+            f"{place} was learned with the {tool} itself: a tool borrows from others; name another "
+            "run, or let it learn for longer"
+        )
     other = _difference(run.spec, spec)
     if other:
         raise UsageError(

@@ -39,12 +39,31 @@ def verification_tables(found: Verification) -> tuple[RenderableType, ...]:
     return tuple(tables)
 
 
+def verdict_words(verdict: str, tried: Evidence, borrowed: Evidence) -> str:
+    """Return a verdict in words: of a table with borrowed rows it may be these that do not hold.
+
+    A borrowed row may never have held for the tool: that it fails does not tell that the tool is
+    another than it was. Where the robot's own rows alone tell that it is, it is said as ever.
+
+    Args:
+        verdict: of all tries.
+        tried: what all tries say.
+        borrowed: what those of borrowed rows say.
+    """
+    own = Evidence(tried.tries - borrowed.tries, tried.failures - borrowed.failures)
+    if verdict != Verdict.CHANGED or not borrowed.failures or own.verdict is Verdict.CHANGED:
+        return verdict
+    but = "borrowed rows do not hold"
+    return but if own.verdict is Verdict.HOLDS else f"{verdict}, or {but}"
+
+
 def _verdict(found: Verification) -> Text:
     """Return in words what was tried, and what follows."""
-    spec, records = found.spec, found.records
+    spec, records, borrowed = found.spec, found.records, found.borrowed
     evidence = Evidence.of(records)
     head = Text(f"Run {found.run_id}, {spec.tool}: ")
-    head.append(evidence.verdict.value, style=STYLE[evidence.verdict])
+    words = verdict_words(evidence.verdict.value, evidence, borrowed)
+    head.append(words, style=STYLE[evidence.verdict])
     first, tried = decided_after(records), many(evidence.tries, "try")
     if not evidence.tries:
         head.append(": no row that was tried is live")
@@ -53,6 +72,10 @@ def _verdict(found: Verification) -> Text:
     else:
         head.append(f": {evidence.failures} of {tried} failed, told after try {first}")
     lines = [head]
+    if borrowed.tries:
+        own = f"{evidence.failures - borrowed.failures} of {evidence.tries - borrowed.tries}"
+        of_borrowed = f"{borrowed.failures} of {many(borrowed.tries, 'try')}"
+        lines.append(Text(f"of borrowed rows {of_borrowed} failed, of its own rows {own}"))
     excluded = found.of_excluded_rows
     if excluded:
         again = sum(one.record.replicated for one in excluded)
@@ -127,16 +150,30 @@ def verifications_table(found: Sequence[VerificationResult]) -> Sheet:
         seconds, after = one.robot_seconds, one.decided_after
         table.add(
             *(str(one.run_id), one.tool, one.shape, one.sensor, str(one.live), str(one.failed)),
-            one.verdict or "interrupted",
+            _stored_verdict(one),
             "-" if after is None else str(after),
             "-" if seconds is None else clock(seconds),
         )
     return table
 
 
+def _stored_verdict(one: VerificationResult) -> str:
+    """Return the verdict of a stored verification in words."""
+    if one.verdict is None:
+        return "interrupted"
+    tried = Evidence(one.live, one.failed)
+    return verdict_words(one.verdict, tried, Evidence(one.borrowed, one.borrowed_failed))
+
+
+def found_words(one: VerificationResult) -> str:
+    """Return what a stored verification found: its verdict, and how many tries failed."""
+    return f"{_stored_verdict(one)} ({one.failed} of {one.live} tries failed)"
+
+
 def verification_json(found: Verification) -> dict[str, Any]:
     """Return what `verification_tables` shows as JSON types, with all rows that drifted."""
     spec, records, excluded = found.spec, found.records, found.of_excluded_rows
+    borrowed = found.borrowed
     evidence = Evidence.of(records)
     return {
         "run": found.run_id,
@@ -152,6 +189,7 @@ def verification_json(found: Verification) -> dict[str, Any]:
         "decided_after": decided_after(records),
         "log_likelihood_ratio": evidence.log_ratio,
         "of_live_rows": {"tries": evidence.tries, "failed": evidence.failures},
+        "of_borrowed_rows": {"tries": borrowed.tries, "failed": borrowed.failures},
         "of_excluded_rows": {
             "tries": len(excluded),
             "replicated": sum(one.record.replicated for one in excluded),

@@ -244,17 +244,20 @@ class Results:
         """Return what the verifications of learning runs found, oldest first."""
         v, r, run = verification.c, replication.c, learning_run.c
         failed = sa.and_(r.live == 1, r.replicated == 0)
+        borrowed = sa.and_(r.live == 1, affordance.c.step <= 0)
         wanted = (
             sa.select(
                 *(v.id, v.learning_run_id, run.tool, v.shape, v.sensor, v.verdict),
                 sa.func.coalesce(sa.func.sum(r.live), 0),
                 sa.func.count(sa.case((failed, 1))),
                 *(v.decided_after, v.robot_seconds),
+                sa.func.count(sa.case((borrowed, 1))),
+                sa.func.count(sa.case((sa.and_(borrowed, failed), 1))),
             )
             .select_from(
-                verification.join(learning_run, run.id == v.learning_run_id).outerjoin(
-                    replication, r.verification_id == v.id
-                )
+                verification.join(learning_run, run.id == v.learning_run_id)
+                .outerjoin(replication, r.verification_id == v.id)
+                .outerjoin(affordance, affordance.c.id == r.affordance_id)
             )
             .where(v.learning_run_id.in_(list(run_ids)))
             .group_by(v.id)

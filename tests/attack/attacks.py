@@ -15,7 +15,7 @@ WRITERS: tuple[Args, ...] = (
     ("learn", "--tool", "TOOL", "--behaviors", "SOME", "--seed", "SEED"),
     ("learn", "--tool", "TOOL", "--seed", "SEED", "--config", "settings.toml"),
     ("learn", "--resume"),
-    ("learn", "--tool", "TOOL", "--minutes", "0", "--transfer-from", "1,2", "--seed", "SEED"),
+    ("learn", "--tool", "fork", "--minutes", "0", "--transfer-from", "1,2", "--seed", "SEED"),
     ("invent", "--tool", "TOOL", "--minutes", "6", "--seed", "SEED"),
     ("solve", "--goal", "GOAL"),
     ("solve", "--goal", "GOAL", "--tool", "t-hook", "--start", "2"),

@@ -183,16 +183,20 @@ def test_what_borrows_is_begun_with_all_its_tools_or_with_none(tmp_path: Path) -
     database = tmp_path / "my.db"
     done("learn", "--tool", "t-hook", "--minutes", "8", "--db", database)
     borrow = ("learn", "--transfer-from", "1:radius=8,limit=1,shifts=0", "--db", database)
-    both = affcli(*borrow, "--tool", "t-hook", "--tool", "fork", "--minutes", "0")
+    both = affcli(*borrow, "--tool", "l-hook", "--tool", "fork", "--minutes", "0")
     assert both.code == UsageError.exit_code
     assert both.err.splitlines()[-1].endswith("--transfer-from 1:radius=8,limit=2,shifts=0")
     assert rows(database, "SELECT count(*) FROM learning_run") == [(1,)]
+    itself = affcli(*borrow, "--tool", "t-hook", "--minutes", "0")
+    assert (itself.code, len(itself.err.splitlines())) == (UsageError.exit_code, 1)
+    assert "run 1 was learned with the t-hook itself" in itself.err
+    assert rows(database, "SELECT count(*) FROM learning_run") == [(1,)]
 
-    ended = done(*borrow, "--tool", "t-hook", "--hours", "0")
-    assert ended.err.startswith("learned t-hook (run 2, seed 0): 0 min 00 s, 0 behaviors")
+    ended = done(*borrow, "--tool", "l-hook", "--hours", "0")
+    assert ended.err.startswith("learned l-hook (run 2, seed 0): 0 min 00 s, 0 behaviors")
     for alike in ("--minutes=-0", "--minutes=0", "--hours=-0.0"):
-        again = done(*borrow, "--tool", "t-hook", alike)
-        assert again.err.startswith("already learned, nothing to do: t-hook (run 2, seed 0)")
+        again = done(*borrow, "--tool", "l-hook", alike)
+        assert again.err.startswith("already learned, nothing to do: l-hook (run 2, seed 0)")
     done("learn", "--tool", "l-stick", "--minutes", "4", "--db", database)
     two = ("--tool", "fork", "--minutes", "0", "--db", database, "--transfer-from")
     done("learn", *two, "1,3:each=9")

@@ -239,6 +239,21 @@ def test_what_cannot_be_borrowed_is_refused_in_one_line(
     assert run_sql(store.path, "select count(*) from learning_run").rows == before
 
 
+def test_a_tool_borrows_from_others_not_from_itself(store: Store) -> None:
+    """Whoever learned with it; another shape under its name is another tool."""
+    learn(store, PARTS.spec("l-stick", 7, 0, MINUTES / 60.0), now)
+    with pytest.raises(UsageError) as told:
+        learn(store, new_tool(store, "1", tool="l-stick"), now)
+    assert str(told.value) == (
+        "--transfer-from: run 1 was learned with the l-stick itself: a tool borrows from others; "
+        "name another run, or let it learn for longer"
+    )
+    assert run_sql(store.path, "select count(*) from learning_run").rows == ((1,),)
+    borrows = new_tool(store, "1", tool="l-stick")
+    altered = replace(borrows, held=replace(borrows.held, parts=PARTS.tool("l-hook").parts))
+    assert learn(store, altered, now).info.rows > 0
+
+
 def test_a_table_that_was_told_lends_nothing(store: Store) -> None:
     """What a baseline is told, no robot may know."""
     spec = PARTS.spec("t-hook", 3, 0, None, 1)

@@ -17,6 +17,7 @@ from affcli.core.specs import VerificationSpec
 from affcli.core.verification import ReplicationRecord
 from affcli.report.verification import (
     MOST_ROWS,
+    found_words,
     verification_json,
     verification_tables,
     verifications_table,
@@ -135,6 +136,66 @@ def test_a_row_that_failed_twice_drifted_once() -> None:
     )
     (row,) = verification_json(twice)["drifted"]
     assert (row["times_successful"], row["times_used"]) == (4, 6)
+
+
+def as_borrowed(tries: list[JudgedTry]) -> list[JudgedTry]:
+    """Return tries of rows that were made with another tool."""
+    return [
+        one._replace(record=replace(one.record, row=replace(one.record.row, step=-number)))
+        for number, one in enumerate(tries)
+    ]
+
+
+OWN = [checked(n) for n in range(1, 61)]
+OWN_FAIL = [checked(n, replicated=False) for n in range(61, 66)]
+LENT = as_borrowed([checked(n, replicated=n % 2 == 0) for n in range(101, 141)])
+LENT_HOLD = as_borrowed([checked(n) for n in range(101, 141)])
+
+
+LENT_FAIL, EITHER = "borrowed rows do not hold", "tool has changed, or borrowed rows do not hold"
+
+
+@pytest.mark.parametrize(
+    ("tries", "verdict", "of_borrowed", "of_own"),
+    [
+        (OWN + LENT, LENT_FAIL, "20 of 40 tries", "0 of 60"),
+        (LENT, EITHER, "20 of 40 tries", "0 of 0"),
+        (OWN_FAIL[:2] + LENT, EITHER, "20 of 40 tries", "2 of 2"),
+        (OWN_FAIL + LENT, "tool has changed", "20 of 40 tries", "5 of 5"),
+        (OWN_FAIL + LENT_HOLD, "tool has changed", "0 of 40 tries", "5 of 5"),
+        (OWN + LENT_HOLD, "table holds", "0 of 40 tries", "0 of 60"),
+        (OWN[:3] + LENT_HOLD[:1], "undecided", "0 of 1 try", "0 of 3"),
+    ],
+)
+def test_where_borrowed_rows_fail_the_tool_is_not_said_to_have_changed(
+    tries: list[JudgedTry], verdict: str, of_borrowed: str, of_own: str
+) -> None:
+    """Unless the robot's own rows alone say so."""
+    found = of(tries)
+    head, beside, *_ = drawn(verification_tables(found), 200).splitlines()
+    assert head.startswith(f"Run 3, t-hook: {verdict}: ")
+    assert beside.rstrip() == f"of borrowed rows {of_borrowed} failed, of its own rows {of_own}"
+    borrowed = [one for one in tries if one.record.row.step <= 0]
+    assert verification_json(found)["of_borrowed_rows"] == {
+        "tries": len(borrowed),
+        "failed": sum(not one.record.replicated for one in borrowed),
+    }
+    counts = [
+        (len(some), sum(not one.record.replicated for one in some)) for some in (tries, borrowed)
+    ]
+    (live, failed), lent = counts
+    stored = VerificationResult(
+        *(1, 3, "t-hook", "t-hook", "noisy", verification_json(found)["verdict"]),
+        *(live, failed, 12, 617.0, *lent),
+    )
+    assert verifications_table([stored]).rows[0][6] == verdict
+    assert found_words(stored) == f"{verdict} ({failed} of {live} tries failed)"
+
+
+def test_excluded_borrowed_rows_say_nothing() -> None:
+    lent = as_borrowed([checked(1, used=2, successful=1, replicated=False)])
+    assert verification_json(of(OWN + lent))["of_borrowed_rows"] == {"tries": 0, "failed": 0}
+    assert "borrowed" not in drawn(verification_tables(of(OWN + lent)), 80)
 
 
 def test_without_live_rows_there_is_nothing_to_share() -> None:

@@ -1,5 +1,7 @@
 """Counts and sums over stored records, held against what the records say one by one."""
 
+import sqlite3
+from contextlib import closing
 from dataclasses import replace
 
 import pytest
@@ -122,7 +124,15 @@ def test_verifications_count_live_tries_and_those_that_failed(store: Store) -> N
     assert (first.id, first.live, first.failed) == (number, 3, 2)
     assert (second.id, second.live, second.failed) == (empty, 0, 0)
     assert (first.tool, first.shape) == ("t-hook", "l-hook")
+    assert (first.borrowed, first.borrowed_failed) == (0, 0)
     assert store.results.verifications([]) == ()
+    with closing(sqlite3.connect(store.path, isolation_level=None)) as driver:
+        lent = sorted(row_id for _, _, row_id in tries)
+        driver.execute("UPDATE affordance SET step = 0 WHERE id = ?", [lent[0]])
+        driver.execute("UPDATE affordance SET step = -1 WHERE id = ?", [lent[1]])
+        driver.execute("UPDATE affordance SET step = -2 WHERE id = ?", [lent[3]])
+    first, _ = store.results.verifications([run.id])
+    assert (first.live, first.failed, first.borrowed, first.borrowed_failed) == (3, 2, 2, 1)
 
 
 def test_the_trials_of_a_broken_tool_are_summed_step_by_step(store: Store) -> None:

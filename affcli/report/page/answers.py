@@ -26,6 +26,7 @@ from affcli.report.breaking import growth_words
 from affcli.report.page.content import Broken, Content, LearnedRows
 from affcli.report.page.drawings import sector
 from affcli.report.replaying import by_reason
+from affcli.report.verification import found_words
 from affcli.report.words import many
 
 
@@ -119,8 +120,7 @@ def worth(content: Content) -> str:
     last = content.verifications[-1]
     return (
         f"{said} Testing the table of run {last.run_id} with the {one_line(last.shape, 60)} in its "
-        f"hand, the robot found: {last.verdict or 'interrupted'} ({last.failed} of {last.live} "
-        "tries failed)."
+        f"hand, the robot found: {found_words(last)}."
     )
 
 
