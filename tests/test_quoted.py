@@ -189,12 +189,13 @@ LIMITS = {
 """Of what may be less, or not as much, as any length, speed, time or count."""
 
 
-def test_a_value_may_be_what_it_could_be_before_and_no_more() -> None:
+def test_a_value_says_what_it_is_and_may_be_what_it_could_be_before_and_no_more() -> None:
     """A limit that moves refuses old files, or lets through what the engine cannot bear."""
     parts = [part for kind in registry.KINDS for part in registry.parts(kind).values()]
     params = {f"{p.kind}: {p.name}: {name}": one for p in parts for name, one in p.params.items()}
     params |= {f"transfer: {name}": one for name, one in settings_of(Borrowing).items()}
     for name, one in (known_settings() | params).items():
+        assert one.meaning.endswith("."), name
         if not one.choices:
             least = 1 if isinstance(one.default, int) else SMALLEST
             assert (one.low, one.high) == LIMITS.get(name, (least, LARGEST)), name

@@ -6,8 +6,10 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from affcli.core.geometry import ConvexPolygon, Point
+from affcli.core.geometry import ConvexPolygon, Point, Pose
 from affcli.simulation.strides import Surroundings
+from affcli.simulation.wrist_motion import trapezoid
+from tests.physics.pushes import simulator
 
 RADIUS = 1.45
 PARTS = (
@@ -43,3 +45,13 @@ def test_the_gap_that_closes_most_is_told(before: Point, now: Point) -> None:
     assume(all(min(far, near) > 1e-3 for far, near in told))
     closed = Surroundings(boxes, RADIUS).closing(before, now)
     assert closed == pytest.approx(max((far - near) / near for far, near in told))
+
+
+@pytest.mark.parametrize("x", [-5.5, -1.5, 0.0, 3.0, 6.0])
+def test_strides_leave_the_puck_where_equal_short_steps_do(x: float) -> None:
+    """Between the bar's ends and beyond its corner, where the puck turns as it slips off."""
+    way = (Pose(x, 26.2, 0.3), Point(0.0, 10.0), Point(0.0, 1.0), trapezoid(5.0, 5.0, 40.0, 1))
+    quick, simple = (simulator("t-hook").push(*way, finer=finer) for finer in (0, 2))
+    assert simple.y > 28.0
+    assert math.dist(quick.point, simple.point) < 0.01
+    assert quick.angle == pytest.approx(simple.angle, abs=math.radians(0.5))

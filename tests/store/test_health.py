@@ -124,3 +124,10 @@ def test_checking_changes_nothing_and_needs_a_database(sound: Path, tmp_path: Pa
     with pytest.raises(DatabaseError, match="no database there"):
         check(tmp_path / "none.db")
     assert not (tmp_path / "none.db").exists()
+
+
+def test_an_empty_file_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "empty.db"
+    path.touch()
+    with pytest.raises(DatabaseError, match=f"^{path}: an empty file; `affcli learn` makes"):
+        check(path)

@@ -1,5 +1,6 @@
 """Learning runs: begun, saved chunk by chunk, read again as they were written."""
 
+import math
 from collections.abc import Iterable
 from dataclasses import replace
 from itertools import count
@@ -29,6 +30,7 @@ from affcli.errors import DatabaseError, UsageError
 from affcli.lab.learning_run import LearningRun
 from affcli.store import Store, run_sql
 from affcli.store.learning import insert_steps, insert_tools
+from affcli.store.rows import params_to_json, to_json
 from tests.factories import learning_spec
 from tests.store.records import NOW, VERSIONS, begun, learned, learning_step, learning_steps
 
@@ -412,3 +414,13 @@ def test_what_came_out_otherwise_is_named(store: Store) -> None:
     )
     (missing, *_) = store.learning.differences(run.id, "t-hook", learning_steps(1, first=4))
     assert missing == Difference(4, "number", None, 4)
+
+
+@pytest.mark.parametrize("number", [math.nan, math.inf])
+def test_a_number_that_json_does_not_have_is_not_stored(number: float) -> None:
+    """SQLite's own functions for JSON would refuse the whole column."""
+    call = BehaviorCall.of(BehaviorName("shove"), {"offset_distance": number})
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        params_to_json(call)
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        to_json([number])

@@ -1,5 +1,6 @@
 """``affcli sql``: whatever a person writes, it reads, briefly, and nothing else (faults 22, 30)."""
 
+import sqlite3
 import time
 from pathlib import Path
 
@@ -9,7 +10,7 @@ from hypothesis import strategies as st
 
 from affcli.bounded import LARGEST_VALUE
 from affcli.errors import BadInputError
-from affcli.store import open_store, run_sql
+from affcli.store import open_store, query, run_sql
 from affcli.store.query import LARGEST_RESULT
 from tests.store.records import learned
 
@@ -186,3 +187,12 @@ def test_any_text_gives_rows_or_one_line(filled: Path, text: str) -> None:
     before = filled.stat().st_mtime_ns
     assert outcome(filled, text, max_seconds=0.5) in ("refused", "truncated", "small")
     assert filled.stat().st_mtime_ns == before
+
+
+@pytest.mark.parametrize("name", ["load_extension", "fts3_tokenizer", "readfile", "writefile"])
+def test_a_function_that_reaches_beyond_the_file_is_denied_where_sqlite_has_it(name: str) -> None:
+    """Python's has none of them; another build may."""
+    denied = query._judge(sqlite3.SQLITE_FUNCTION, None, name, None, None)
+    assert denied == sqlite3.SQLITE_DENY
+    allowed = query._judge(sqlite3.SQLITE_FUNCTION, None, "count", None, None)
+    assert allowed == sqlite3.SQLITE_OK
