@@ -196,6 +196,7 @@ def test_a_value_says_what_it_is_and_may_be_what_it_could_be_before_and_no_more(
     params |= {f"transfer: {name}": one for name, one in settings_of(Borrowing).items()}
     for name, one in (known_settings() | params).items():
         assert one.meaning.endswith("."), name
+        assert isinstance(one.unit, str), name
         if not one.choices:
             least = 1 if isinstance(one.default, int) else SMALLEST
             assert (one.low, one.high) == LIMITS.get(name, (least, LARGEST)), name

@@ -43,6 +43,14 @@ def test_the_order_in_which_parameters_are_given_does_not_count(
     assert canonical_json(one.canonical()) == canonical_json(other.canonical())
 
 
+def test_a_text_may_be_as_long_as_it_may_be() -> None:
+    name, value = "a", "1" * (LONGEST_TEXT - len("a:b="))
+    assert Component.parse("a" * 3).name == "aaa"
+    with pytest.raises(BadInputError):
+        Component.parse(f"{name}:b={value}1")
+    assert Component.parse(f"{name}:b={value}").name == "a"
+
+
 @pytest.mark.parametrize(
     "text",
     [

@@ -17,7 +17,7 @@ from affcli.core.choice import Choice, Reason, Situation
 from affcli.core.geometry import Point, Pose
 from affcli.core.task import GoalRegion
 from affcli.errors import BadInputError
-from affcli.planning.lookahead import Lookahead
+from affcli.planning.lookahead import INSIDE, SMALL_GOAL, Lookahead, _HalfPlanes
 from affcli.planning.one_step import OneStep
 from affcli.planning.row_model import RowModel
 from tests.factories import affordance, goal_at, observation, places, situation, table_of
@@ -226,3 +226,14 @@ def test_of_equally_good_paths_the_one_that_needs_no_new_grasp_is_taken() -> Non
     assert Lookahead().choose(replace(here, holding=rows[1].binding)).position == 1
     assert Lookahead().choose(replace(here, holding=other.binding)).position == 0
     assert Lookahead(regrasp=0.0).choose(replace(here, holding=rows[1].binding)).position == 0
+
+
+@pytest.mark.parametrize(("half_width", "margin"), [(2.25, INSIDE), (0.1, SMALL_GOAL * 0.1)])
+def test_a_path_ends_at_the_goal_where_it_ends_well_inside_each_edge(
+    half_width: float, margin: float
+) -> None:
+    goal, off = goal_at(3.0, 20.0, half_width), half_width - margin
+    ways = np.array([(0.0, 1.0), (0.0, -1.0), (1.0, 0.0), (-1.0, 0.0)])
+    for out, held in ((off - 1e-6, True), (off + 1e-6, False)):
+        x, y = ((3.0, 20.0) + out * ways).T
+        assert _HalfPlanes(goal).hold(x, y).tolist() == [held] * 4

@@ -401,6 +401,14 @@ def test_a_behavior_s_scene_is_as_it_truly_was(store: Store) -> None:
         store.learning.scene(9, 1)
 
 
+def test_a_behavior_that_cannot_be_read_is_named(store: Store) -> None:
+    run = learned(store, 3)
+    with store.database.writing() as connection:
+        connection.exec_driver_sql("update behavior set exploratory_params = '[1]' where step = 3")
+    with pytest.raises(DatabaseError, match=f"Run {run.id}, behavior 3 of 3"):
+        store.learning.scene(run.id, 3)
+
+
 def test_what_came_out_otherwise_is_named(store: Store) -> None:
     run = learned(store, 3)
     steps = learning_steps(3)

@@ -247,6 +247,22 @@ def test_rows_that_solve_used_are_copied_as_they_were_learned(tmp_path: Path) ->
     assert merge([source], target, NOW) == Merged(0, 1, merged.left_out)
 
 
+def test_experiments_whose_numbers_are_the_same_are_kept_apart(tmp_path: Path) -> None:
+    """Each begins at session 1 of its own database."""
+    other = experiment_of(
+        {**TABLES, "experiment": {"name": "other", "robots": 1, "seed": 6}}, "a test"
+    )
+    parts = [live(tmp_path / "a.db", [0]), live(tmp_path / "b.db", [0], other)]
+    target = tmp_path / "all.db"
+    assert merge(parts, target, NOW).new == 2
+    with opened(target) as store:
+        assert [info.name for info in store.experiments.all()] == ["shared", "other"]
+        sessions = [number for info in store.experiments.all() for _, number in info.conditions]
+        assert len(set(sessions)) == 6
+        assert all(store.learning.runs(session_id=number) for number in sessions)
+    assert not any(finding.wrong for finding in check(target))
+
+
 @pytest.mark.parametrize("existing", [False, True])
 def test_a_merge_that_fails_leaves_no_new_file(
     shards: list[Path], tmp_path: Path, *, existing: bool
