@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import NamedTuple
 
 from affcli.analysis.paired import Comparison, Counts
@@ -30,12 +31,14 @@ class ConditionResult(NamedTuple):
         name, session: of the condition.
         tallies: its trials that count, by kind.
         invalid: those that count for nothing.
+        failures: how many of those that count failed, by kind; the commonest first.
     """
 
     name: str
     session: int
     tallies: Mapping[str, Tally]
     invalid: InvalidTrials = InvalidTrials()
+    failures: Mapping[str, int] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True)

@@ -81,6 +81,7 @@ def experiment_of(store: Store, info: ExperimentInfo) -> ExperimentResult:
                 session,
                 tallies(store.results.solved_by_cell(session, ())),
                 store.results.invalid(session),
+                failures_in(store.results.outcome_counts([session])).kinds,
             )
             for name, session in info.conditions
         ],

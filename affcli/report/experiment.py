@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from affcli.analysis.experiment import ConditionResult, ExperimentResult, Tally
 from affcli.core.records import FailedRobot
+from affcli.core.trial import Outcome
 from affcli.errors import one_line
 from affcli.report.sheet import Sheet
 from affcli.report.words import clock, many
@@ -87,6 +88,7 @@ def experiment_json(one: ExperimentResult) -> dict[str, Any]:
                 },
                 "invalid": condition.invalid.trials,
                 "why_invalid": condition.invalid.why,
+                "failures": dict(condition.failures),
             }
             for condition in one.results
         ],
@@ -126,7 +128,9 @@ def invalid_words(condition: ConditionResult) -> str:
 
 
 def experiment_tables(one: ExperimentResult) -> list[Sheet]:
-    """Return the mean of the successes under each condition by kind of trials; who failed."""
+    """Return the mean of the successes under each condition by kind of trials; how trials failed,
+    and which robots.
+    """
     kinds = tuple(dict.fromkeys(kind for condition in one.results for kind in condition.tallies))
     invalid = [words for condition in one.results if (words := invalid_words(condition))]
     table = Sheet(
@@ -139,7 +143,21 @@ def experiment_tables(one: ExperimentResult) -> list[Sheet]:
         cells = [_cell(condition.tallies.get(kind)) for kind in kinds]
         beside = (str(condition.invalid.trials),) if invalid else ()
         table.add(condition.name, str(condition.session), *cells, *beside)
-    return [table, *failed_tables(one.failed)]
+    return [table, *_failures_tables(one.results), *failed_tables(one.failed)]
+
+
+def _failures_tables(conditions: Sequence[ConditionResult]) -> list[Sheet]:
+    """Return a table of how trials failed under each condition; none where none did."""
+    kinds = [kind for kind in Outcome if any(kind in one.failures for one in conditions)]
+    table = Sheet(
+        ("condition", *kinds),
+        title="Failures by kind",
+        caption="trials of all robots",
+        left=("condition",),
+    )
+    for one in conditions:
+        table.add(one.name, *(str(one.failures.get(kind, 0)) for kind in kinds))
+    return [table] if kinds else []
 
 
 def _cell(tally: Tally | None) -> str:

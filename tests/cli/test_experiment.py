@@ -1,6 +1,7 @@
 """``affcli experiment``: what it says before, while and after robots live."""
 
 import re
+import shutil
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from affcli.lab.conducting import begin, run
 from affcli.lab.definition import experiment_file
 from affcli.store import open_store
 from tests.cli.program import affcli, contents, done, ending, names_in, refused, rows, started
+from tests.cli.table_rows import tamper
 from tests.lab.quick import now, taken
 from tests.lab.test_experiment import fail
 
@@ -54,12 +56,42 @@ def test_it_says_what_each_condition_gave(file: Path, lived: Path) -> None:
     before = lived.read_bytes()
     ended = done("experiment", file, "--db", lived)
     assert ended.err == f"experiment two: 2 robots, saved in {lived}\n"
-    title, heading, _, *cells, question = ended.out.splitlines()
+    solved, failed = ended.out.split("\n\n")
+    assert failed.splitlines()[0] == "Failures by kind"
+    title, heading, _, *cells, question = solved.splitlines()
     assert title == "two: solved, mean of 2 robots"
     assert heading.split() == ["condition", "session", "extension-of-reach", "broken", "tool"]
     assert [line.split()[:2] for line in cells] == [["paper", "1"], ["rough", "2"]]
     assert question == "Does the friction matter?"
     assert lived.read_bytes() == before
+
+
+def test_it_counts_failures_by_kind_under_each_condition(
+    file: Path, lived: Path, tmp_path: Path
+) -> None:
+    path = Path(shutil.copy(lived, tmp_path / "two.db"))
+    changed = "UPDATE trial SET outcome = 'no plan found' WHERE outcome = 'step limit'"
+    tamper(path, f"{changed} AND session_id = 2 AND id % 2")
+    counted = "SELECT session_id, outcome, count(*) FROM trial WHERE outcome <> 'solved' GROUP BY"
+    stored = {(one, kind): count for one, kind, count in rows(path, f"{counted} 1, 2")}
+    kinds = {kind for _, kind in stored}
+    assert {"step limit", "no plan found"} <= kinds
+    value: Any = done("experiment", file, "--db", path, "--json").result
+    told = {
+        (one["session"], kind): count
+        for one in value["conditions"]
+        for kind, count in one["failures"].items()
+    }
+    assert told == stored
+    for command in (("experiment", file), ("report",)):
+        shown = done(*command, "--db", path, COLUMNS="200").out
+        heading, _, *lines = shown.partition("Failures by kind\n")[2].splitlines()[:4]
+        columns = re.split(" {2,}", heading.strip())
+        assert set(columns[1:]) == kinds
+        for session, line in enumerate(lines, 1):
+            counts = map(int, line.split()[1:])
+            in_line = {k: n for k, n in zip(columns[1:], counts, strict=True) if n}
+            assert in_line == {k: n for (one, k), n in stored.items() if one == session}
 
 
 def test_its_json_has_each_robots_successes(file: Path, lived: Path) -> None:
