@@ -7,10 +7,12 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from affcli import store
+from affcli import lab, registry, store
 from affcli.cli.options import DEFAULT_TOOL
 from affcli.cli.terminal import say
 from affcli.core.records import FailedRobot
+from affcli.core.specs import Parts
+from affcli.core.task import Task
 from affcli.core.trial import DIVERGED, Outcome, TrialEnd, is_counted
 from affcli.errors import BadInputError, PartFailedError, one_line
 from affcli.lab.suggesting import with_database
@@ -77,6 +79,22 @@ def say_failures(ends: Sequence[tuple[int, TrialEnd]]) -> int:
         say(f"{which or f'trial {first} counts'} for nothing: {one_line(reason, 500)}")
     counted = any(is_counted(end.outcome) for _, end in ends)
     return 0 if counted else PartFailedError.exit_code
+
+
+def say_beyond_reach(tasks: Sequence[Task], carried: Parts) -> None:
+    """Say which places of a person's own tasks lie where none of the paper's tools reaches.
+
+    Args:
+        tasks: of one set or several; none to say nothing.
+        carried: the parts of a run, in whose sizes they are done.
+    """
+    if carried.world.name != registry.DEFAULTS["world"]:
+        return
+    workspace = lab.run_parts.settings_of(carried).workspace
+    for name in dict.fromkeys(task.task_set for task in tasks):
+        own = [task for task in tasks if task.task_set == name]
+        if words := lab.checking.beyond_reach(own, workspace):
+            say(f"tasks {one_line(name, 60)}: {words}")
 
 
 def say_trials(ends: Sequence[tuple[int, TrialEnd]], worth_seeing: int, database: Path) -> None:

@@ -9,7 +9,7 @@ import typer
 
 from affcli import lab
 from affcli import store as stores
-from affcli.cli.database import opened, say_failed
+from affcli.cli.database import opened, say_beyond_reach, say_failed
 from affcli.cli.options import AsJson, Database, Resume, Scheduler, Workers, checked_pool
 from affcli.cli.terminal import progress, say, show_either
 from affcli.core.names import one_of
@@ -106,6 +106,9 @@ def experiment(
     with opened(database, create=wanted is not None, write=True) as store:
         what = wanted or _interrupted(store, database)
         info = lab.conducting.begin(store, what, now, keep)
+        for one in what.conditions:
+            own = [tasks for tasks in one.tasks if not isinstance(tasks, str)]
+            say_beyond_reach([task for tasks in own for task in tasks], one.parts)
         robots = (shard or Shard()).of(what.robots)
         with progress(one_line(what.name), len(robots), "robots") as bar:
             for saved in lab.conducting.run(store, what, info, pool, now, say, robots, keep):

@@ -4,8 +4,8 @@ from typing import Annotated
 
 import typer
 
-from affcli import lab
-from affcli.cli.database import opened, say_failures, say_trials
+from affcli import lab, registry
+from affcli.cli.database import opened, say_beyond_reach, say_failures, say_trials
 from affcli.cli.options import (
     DEFAULT_PLANNER,
     DEFAULT_TASKS,
@@ -76,6 +76,8 @@ def solve(
             trials.append(one)
             if explain and not as_json:
                 show(explain_trial(one.trial, one.end, one.steps))
+    if registry.names_file(task):
+        say_beyond_reach([one.trial.task for one in trials], runs[0].spec)
     used = {one.spec.tool: one for one in runs}
     show_either(
         as_json=as_json,

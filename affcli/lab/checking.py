@@ -158,7 +158,8 @@ def _tasks(path: Path, workspace: Workspace) -> Checked:
         "tasks": f"{len(tasks)}: {counts}",
         "goals": _places_words(goals),
         "starts": _places_words(starts),
-        "reach": _reach_words({**goals, **starts}, workspace),
+        "reach": beyond_reach(tasks, workspace)
+        or "each place is within reach of one of the paper's tools",
     }
     return Checked("tasks", tasks[0].task_set, facts, tasks)
 
@@ -169,8 +170,10 @@ def _places_words(places: Mapping[str, Point]) -> str:
     return "; ".join(f"{name} at ({at.x:g}, {at.y:g})" for name, at in named.items())
 
 
-def _reach_words(places: Mapping[str, Point], workspace: Workspace) -> str:
-    """Return which places lie off the table, or out of reach of all the paper's tools."""
+def beyond_reach(tasks: Sequence[Task], workspace: Workspace) -> str:
+    """Return in words which goals (their middles) and starts lie off the table, or out of reach of
+    all the paper's tools; empty when none does.
+    """
     from affcli.simulation.arm import reach_at
     from affcli.simulation.reach_of_tool import touchable
     from affcli.simulation.tools.paper import paper_tools
@@ -178,16 +181,13 @@ def _reach_words(places: Mapping[str, Point], workspace: Workspace) -> str:
     top, arm = workspace.table, workspace.arm
     reach, depth = reach_at(arm, arm.flange_height), workspace.puck.radius - MOVEMENT_THRESHOLD
     tools = paper_tools(workspace.tools).values()
+    places = {f"goal {task.goal.name}": task.goal.center for task in tasks}
+    places |= {f"start {task.start_name}": task.start for task in tasks}
     off, far = [], []
     for name, at in places.items():
         if abs(at.x) > top.half_width or not top.near <= at.y <= top.far:
             off.append(name)
         elif not any(touchable(tool.outlines, reach, at, depth) for tool in tools):
             far.append(name)
-    return _problems(off, far) or "each place is within reach of one of the paper's tools"
-
-
-def _problems(off: Sequence[str], far: Sequence[str]) -> str:
-    """Return in words which places cannot be used."""
     said = ((off, "off the table"), (far, "out of reach of the paper's tools"))
     return "; ".join(f"{what}: {', '.join(names)}" for names, what in said if names)

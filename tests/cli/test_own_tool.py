@@ -128,6 +128,25 @@ def test_places_that_no_tool_reaches_are_named(tmp_path: Path) -> None:
     )
 
 
+def test_who_tries_what_no_tool_reaches_is_told_so_in_a_line(tmp_path: Path) -> None:
+    """Of those tasks that were asked for; the trials are done, and fail."""
+    done("new", "task", "corner", cwd=tmp_path)
+    file = tmp_path / "corner.toml"
+    file.write_text(file.read_text().replace("[-8, 26]", "[-18, 26]"))
+    few = ("--behaviors", "60", "--set", "trial.max_steps=3", "--db", "own.db")
+    done("learn", "--tool", "t-hook", *few, cwd=tmp_path)
+    solve = ("solve", "--task", "./corner.toml", "--db", "own.db")
+    told = done(*solve, cwd=tmp_path).err
+    assert told.splitlines()[0] == "tasks corner: off the table: goal left"
+    assert "off the table" not in done(*solve, "--goal", "right", cwd=tmp_path).err
+    (tmp_path / "it.toml").write_text(
+        "[experiment]\nname = 'it'\nquestion = '?'\nrobots = 1\n[base]\nminutes = 2\n"
+        "tools = ['t-hook']\ntasks = ['./corner.toml']\n[[condition]]\nname = 'paper'\n"
+    )
+    ended = done("experiment", "it.toml", "--workers", "1", "--db", "it.db", cwd=tmp_path)
+    assert ended.err.splitlines()[0] == "tasks corner: off the table: goal left"
+
+
 @pytest.mark.parametrize("kind", ["tool", "behavior", "task"])
 def test_a_name_with_quotes_is_written_as_toml_has_it(kind: str, tmp_path: Path) -> None:
     done("new", kind, 'so "called"', "--out", "it.toml", cwd=tmp_path)
