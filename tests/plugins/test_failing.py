@@ -94,6 +94,25 @@ def test_a_trial_that_failed_is_explained_left_out_done_again_and_shown(
     assert "ZeroDivisionError" in (tmp_path / "page.html").read_text()
 
 
+def test_a_planner_that_gives_no_row_and_no_reason_has_found_no_plan(
+    install: Install, learned: Path
+) -> None:
+    """It keeps its contract: its trials count, as failures of a kind of their own."""
+    text = PLANNER.format(does="from affcli.core.choice import Choice; return Choice(None, ())")
+    install("bad_one", text, {"planners": {"mine": "bad_one:MINE"}})
+    db = ("--db", learned)
+    ended = done("solve", "--goal", "2", "--planner", "mine", "--explain", *db)
+    assert ended.out.count("start 1, planner mine@bad-one-0.1: no plan found (0 steps)\n") == 1
+    assert "rows left" not in ended.out
+    assert set(rows(learned, "SELECT outcome, last_reasons FROM trial")) == {
+        ("no plan found", "[]")
+    }
+    assert done("report", "--json", *db).result["failures"] == {"no plan found": 4}
+    assert done("replay", "1", *db).err == (
+        "trial 1 ended: no plan found; the replay equals the record, no steps\n"
+    )
+
+
 EXPERIMENT = """
 [experiment]
 name = "two"
