@@ -204,18 +204,22 @@ def distorted(undistorted: Array, kappa: float) -> Array:
     if kappa == 0.0:
         return undistorted
     ideal = np.hypot(undistorted[:, 0], undistorted[:, 1])
-    inside = np.ones(len(ideal), dtype=bool)
-    radius = ideal.copy()
-    if kappa < 0.0:
-        turn = 1.0 / math.sqrt(-3.0 * kappa)
-        inside = ideal < turn * 2.0 / 3.0
-        radius = np.minimum(ideal, 0.9 * turn)
+    turn = 1.0 / math.sqrt(-3.0 * kappa) if kappa < 0.0 else math.inf
+    radius = np.minimum(ideal, 0.9 * turn)
     for _ in range(NEWTON_STEPS):
-        squared = radius**2
-        slope = 1.0 + 3.0 * kappa * squared
-        radius = radius - (radius * (1.0 + kappa * squared) - ideal) / slope
+        # In place: of so few numbers each array that is made takes as long as what is done with it.
+        squared = radius * radius
+        slope = 3.0 * kappa * squared
+        slope += 1.0
+        squared *= kappa
+        squared += 1.0
+        squared *= radius
+        squared -= ideal
+        squared /= slope
+        radius -= squared
     scale = np.divide(radius, ideal, out=np.ones_like(ideal), where=ideal > 0.0)
-    return np.where(inside[:, None], undistorted * scale[:, None], np.nan)
+    scale[ideal >= turn * 2.0 / 3.0] = np.nan
+    return undistorted * scale[:, None]
 
 
 def looking(tilt: float, turn: float) -> Array:

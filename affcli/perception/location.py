@@ -7,6 +7,7 @@ be off by a quarter of an inch. The wrist's disc lies at the height of the flang
 table.
 """
 
+import math
 from dataclasses import dataclass, replace
 
 import cv2
@@ -242,11 +243,11 @@ def _completed_centroid(
         x, y, and how many pixels hide it.
     """
     height, width = labels.shape
-    low = np.floor(outline.min(axis=0)).astype(int) - PAD
-    high = np.ceil(outline.max(axis=0)).astype(int) + PAD + 1
-    left, top = max(0, min(int(low[0]), blob.left)), max(0, min(int(low[1]), blob.top))
-    right = min(width, max(int(high[0]), blob.left + blob.width))
-    bottom = min(height, max(int(high[1]), blob.top + blob.height))
+    x, y = (math.floor(low) - PAD for low in outline.min(axis=0).tolist())
+    left, top = max(0, min(x, blob.left)), max(0, min(y, blob.top))
+    x, y = (math.ceil(high) + PAD + 1 for high in outline.max(axis=0).tolist())
+    right = min(width, max(x, blob.left + blob.width))
+    bottom = min(height, max(y, blob.top + blob.height))
     region = labels[top:bottom, left:right]
     inside = np.zeros(region.shape, np.uint8)
     cv2.fillConvexPoly(inside, np.rint(outline - (left, top)).astype(np.int32), 255)

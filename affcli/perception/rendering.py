@@ -164,7 +164,7 @@ class Renderer:
             return None
         corner = np.array([region[1].start, region[0].start])
         rough = corners.astype(np.float32)
-        tops, hulls = _fixed(corners - corner), _fixed(rough - corner)
+        tops, hulls = _fixed(np.array([corners, rough]) - corner)
         shapes: list[list[_Shape]] = []
         ends = [f.reduceat(corners, starts[:-1]).tolist() for f in (np.minimum, np.maximum)]
         pieces = zip(pairwise(starts), *ends, strict=True)
@@ -315,7 +315,7 @@ def _times(box: Region) -> Region:
 
 
 def _fixed(corners: Array) -> NDArray[np.int32]:
-    """Return where corners (n, 2), px, are in the fine picture, in OpenCV's fixed point."""
+    """Return where corners (..., 2), px, are in the fine picture, in OpenCV's fixed point."""
     # Of a table of miles a corner may lie where the lens's model has no place for it.
     fine = ((corners + 0.5) * FINE - 0.5).clip(-FARTHEST, FARTHEST)
     fine[np.isnan(fine)] = FARTHEST
