@@ -5,9 +5,10 @@ import subprocess
 import sys
 from collections.abc import Callable
 from multiprocessing.connection import Connection, Pipe
-from queue import SimpleQueue
-from threading import Thread
+from select import poll
 from typing import Any
+
+from affcli.beside import beside
 
 BEGIN = (
     "import sys; from multiprocessing.connection import Connection; "
@@ -61,14 +62,18 @@ def received(pipe: "Connection[Any, Any]") -> Callable[[], Any]:
 
     For the child: it ends with the parent, which may be killed while the child does something.
     """
-    pieces: SimpleQueue[Any] = SimpleQueue()
+    parent = poll()
+    parent.register(pipe, 0)
 
-    def receive() -> None:
+    def ends_with_parent() -> None:
+        parent.poll()  # until the other end is closed: nothing else was asked for
+        os._exit(1)
+
+    def receive() -> Any:
         try:
-            while True:
-                pieces.put(pipe.recv())
+            return pipe.recv()
         except GONE:
             os._exit(1)
 
-    Thread(target=receive, daemon=True).start()
-    return pieces.get
+    beside(ends_with_parent)
+    return receive

@@ -57,6 +57,9 @@ def _raise_again(signum: int, frame: FrameType | None) -> None:
 
 
 def _report_unraisable(unraisable: "sys.UnraisableHookArgs") -> None:
-    """Report an exception that Python had to swallow, unless it is ours."""
-    if not isinstance(unraisable.exc_value, Stopped):
+    """Report an exception that Python had to swallow, unless it is ours, or memory ran out.
+
+    Where memory runs out in a thread or a finalizer, what the command needs of it soon fails too.
+    """
+    if not issubclass(unraisable.exc_type, (Stopped, MemoryError)):
         sys.__unraisablehook__(unraisable)

@@ -10,9 +10,10 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from textwrap import fill
-from threading import Event, Thread
+from threading import Event, Lock
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
+from affcli.beside import beside
 from affcli.errors import AffcliError, one_line
 
 if TYPE_CHECKING:
@@ -29,6 +30,8 @@ NARROWEST = 20
 WIDE_ENOUGH_FOR_BARS = 72
 A_MINUTE = 60.0
 """Seconds between two lines that say how far something is, where there is no terminal."""
+A_MOMENT = 0.1
+"""Seconds between two looks of the bars on a terminal."""
 _command = ""
 
 
@@ -233,9 +236,11 @@ def bars(
         far[number].update(done, status)
 
     if not sys.stderr.isatty():
-        with _said_each_minute(
-            lambda: "; ".join(f"{tasks[n][0]}: {one.words()}" for n, one in far.items())
-        ):
+
+        def tell() -> None:
+            say("; ".join(f"{tasks[n][0]}: {one.words()}" for n, one in far.items()))
+
+        with _again_and_again(tell, A_MINUTE):
             yield told
         return
     from rich.progress import BarColumn, Progress, ProgressColumn, Task, TextColumn
@@ -261,7 +266,7 @@ def bars(
     columns.append(Words(table_column=Column(no_wrap=True)))
     if not shows_bars:
         del columns[1]
-    with Progress(*columns, console=console, transient=True) as shown:
+    with Progress(*columns, console=console, transient=True, auto_refresh=False) as shown:
         ids = {
             number: shown.add_task(description, total=total, number=number)
             for number, (description, total) in tasks.items()
@@ -271,7 +276,8 @@ def bars(
             told(number, done, status)
             shown.update(ids[number], completed=done)
 
-        yield update
+        with _again_and_again(shown.refresh, A_MOMENT):
+            yield update
 
 
 def _parts_within(text: str, room: int) -> str:
@@ -317,22 +323,24 @@ def _clock(seconds: float) -> str:
 
 
 @contextmanager
-def _said_each_minute(words: "Callable[[], str]") -> "Iterator[None]":
-    """Say how far it is once a minute while the block runs, whatever the block waits for."""
-    over = Event()
+def _again_and_again(tell: "Callable[[], object]", seconds: float) -> "Iterator[None]":
+    """Tell something every so many seconds while the block runs, whatever the block waits for."""
+    over, telling = Event(), Lock()
 
-    def tell() -> None:
-        with suppress(AffcliError):  # nobody can read it: the block finds out when it has to say
-            while not over.wait(A_MINUTE):
-                say(words())
+    def keep_telling() -> None:
+        # Nobody can read it: the block finds out when it has to say something.
+        with suppress(AffcliError, OSError):
+            while not over.wait(seconds):
+                with telling:
+                    if not over.is_set():
+                        tell()
 
-    teller = Thread(target=tell, daemon=True)
-    teller.start()
+    beside(keep_telling)
     try:
         yield
     finally:
         over.set()
-        teller.join()
+        telling.acquire()  # what is being told is told to its end
 
 
 def followed(items: "Iterable[T]", description: str, total: int, noun: str) -> "list[T]":
