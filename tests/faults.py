@@ -81,5 +81,7 @@ FAULTS = {
     44: "Killed commands leave files half written: the next command that writes the same one "
     "removes those that are an hour old.",
     45: "A signal in the first moment, before affcli listens to any: it ends silently, 130 or 143.",
+    46: "Memory runs out, also for a library, a thread or a child: 4, and a line that says so; "
+    "never a hang.",
 }
 """What happens, and what must follow, by number."""

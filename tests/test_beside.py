@@ -85,6 +85,7 @@ def test_it_is_done_while_the_caller_goes_on() -> None:
     assert ended.wait(PATIENCE)
 
 
+@pytest.mark.fault(46)
 @pytest.mark.usefixtures("too_little", "no_python_thread")
 def test_a_command_goes_on_without_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """`learn` hung when memory ran out in the thread that says how far it is."""
@@ -114,6 +115,7 @@ def test_the_time_of_a_bar_goes_on_while_nothing_else_does(monkeypatch: pytest.M
     assert "0:01" in screen.getvalue()
 
 
+@pytest.mark.fault(46)
 @pytest.mark.usefixtures("too_little", "no_python_thread")
 def test_a_bar_moves_without_it_when_something_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
     screen = Screen()

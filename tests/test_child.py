@@ -57,6 +57,7 @@ def test_it_ends_when_the_other_end_is_closed(begun: Child) -> None:
     assert begun.process.wait(PATIENCE) == 1
 
 
+@pytest.mark.fault(46)
 @pytest.mark.parametrize("begun", ["answering"], indirect=True)
 def test_it_ends_when_it_has_no_memory_for_what_comes(begun: Child) -> None:
     """It waited for ever for the thread that reads, which had died of it."""

@@ -3,6 +3,7 @@
 import errno
 import gc
 import sys
+from mmap import mmap
 from pathlib import Path
 
 from affcli.cli.commands import how_it_goes_on
@@ -15,8 +16,16 @@ OBJECTS_BETWEEN_COLLECTIONS = 100_000
 that run for hours; importing the libraries would be searched three hundred times, which is a tenth
 of the time of `affcli learn`."""
 
-NO_ROOM_FOR_A_LIBRARY = "failed to map segment from shared object"
-"""What the loader says, in an ImportError, of a library for which there is no memory."""
+ROOM_FOR_NUMPY = 100 << 20
+"""Bytes of address space that NumPy needs to be imported: with less, its OpenBLAS ends the process
+with a line and a code of its own."""
+FOR_WANT_OF_MEMORY = (
+    "failed to map segment from shared object",
+    "without exception set",
+    "without setting an exception",
+)
+"""What is said where there is no memory for a library (the loader, in an ImportError) or to call a
+function (Python, in a SystemError)."""
 OUT_OF_MEMORY = "memory ran out; what was saved is kept; ask for less, or leave more memory free"
 
 
@@ -42,6 +51,8 @@ def main() -> int:
 def _run(handler: SignalHandler) -> int:
     """Run the command; return its exit code, after a line about what ended it."""
     try:
+        if "numpy" not in sys.modules:
+            mmap(-1, ROOM_FOR_NUMPY).close()
         # Imported only now: a ctrl-C meanwhile is one line like any other.
         from affcli.cli.app import run  # noqa: PLC0415
 
@@ -72,7 +83,10 @@ def _ran_out_of_memory(error: BaseException | None) -> bool:
     """Tell whether memory ran out, or did and made something else go wrong."""
     while error is not None:
         of_the_system = isinstance(error, OSError) and error.errno == errno.ENOMEM
-        if isinstance(error, MemoryError) or of_the_system or NO_ROOM_FOR_A_LIBRARY in str(error):
+        said = isinstance(error, (ImportError, SystemError)) and any(
+            words in str(error) for words in FOR_WANT_OF_MEMORY
+        )
+        if isinstance(error, MemoryError) or of_the_system or said:
             return True
         error = error.__context__
     return False

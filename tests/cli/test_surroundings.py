@@ -62,11 +62,14 @@ def test_a_cache_that_cannot_be_made_is_not_spoken_of(tmp_path: Path) -> None:
     assert names_in(tmp_path) == ["a.pdf"]
 
 
+@pytest.mark.fault(46)
 @pytest.mark.parametrize(
     "error",
     [
         *(MemoryError(), ValueError("what came of it"), OSError(12, "Cannot allocate memory")),
         ImportError("x.so: failed to map segment from shared object"),
+        SystemError("error return without exception set"),
+        SystemError("<function f> returned NULL without setting an exception"),
     ],
     ids=repr,
 )

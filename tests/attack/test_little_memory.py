@@ -1,0 +1,54 @@
+"""Too little memory from the start of Python on: a command ends by itself, in a line."""
+
+import resource
+import subprocess
+from collections import Counter
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from affcli.cli.main import OUT_OF_MEMORY
+from tests.cli.program import PATIENCE, PROGRAM, environment, names_in
+
+LITTLE, ENOUGH = 40_000, 240_000
+"""Address space (kB) in which Python starts but `learn` cannot, and in which it can."""
+STEP, WIDE_STEP = 1_000, 40_000
+LEARN = ("learn", "--tool", "t-hook", "--behaviors", "60", "--db", "my.db")
+
+
+def confine(kilobytes: int) -> None:
+    """Let this process have so much address space, and no more."""
+    resource.setrlimit(resource.RLIMIT_AS, (1024 * kilobytes, 1024 * kilobytes))
+
+
+@pytest.mark.fault(46)
+@pytest.mark.torture
+def test_with_too_little_memory_learn_says_so(
+    tmp_path: Path, torture: bool, tell: Callable[[str], None]
+) -> None:
+    """It hung, or OpenBLAS or a traceback ended it."""
+    ends: Counter[str] = Counter()
+    for kilobytes in range(LITTLE, ENOUGH + 1, STEP if torture else WIDE_STEP):
+        ended = subprocess.run(
+            [*PROGRAM, *LEARN],
+            cwd=tmp_path,
+            env=environment(),
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            preexec_fn=partial(confine, kilobytes),
+            timeout=PATIENCE,
+            check=False,
+        )
+        if ended.returncode == 0:
+            ends["learned"] += 1
+        else:
+            said = (ended.returncode, ended.stderr)
+            assert said == (4, f"affcli: {OUT_OF_MEMORY}\n"), kilobytes
+            ends["in a line"] += 1
+        assert set(names_in(tmp_path)) <= {"my.db"}, kilobytes
+        (tmp_path / "my.db").unlink(missing_ok=True)
+    assert ends["in a line"] > ends["learned"] > 0
+    tell(f"{ends.total()} limits: {ends['in a line']} ended in a line, {ends['learned']} learned")
