@@ -3,7 +3,8 @@
 from _thread import start_new_thread
 from collections.abc import Callable
 from contextlib import suppress
-from mmap import mmap
+
+from affcli.memory import ask_for
 
 ROOM = 16 << 20
 """Bytes of address space that a thread needs: 8 MB of stack, and what Python begins with in it."""
@@ -19,7 +20,7 @@ def beside(work: Callable[[], object]) -> None:
     Args:
         work: handles its own errors.
     """
-    with suppress(OSError, RuntimeError):  # no room, or no more threads
+    with suppress(MemoryError, RuntimeError):  # no room, or no more threads
         # Asked for here, where it can be refused: a thread that finds none cannot even be told so.
-        mmap(-1, ROOM).close()
+        ask_for(ROOM)
         start_new_thread(work, ())

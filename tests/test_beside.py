@@ -47,15 +47,15 @@ def starts_none(work: Callable[[], object], args: tuple[()]) -> int:
     raise RuntimeError("can't start new thread")
 
 
-def has_no_room(where: int, length: int) -> None:
-    del where, length
-    raise OSError(12, "Cannot allocate memory")
+def has_no_room(size: int) -> None:
+    del size
+    raise MemoryError
 
 
 @pytest.fixture(params=[starts_and_dies, starts_none, has_no_room], ids=lambda one: one.__name__)
 def too_little(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """There is too little of something for a thread."""
-    name = "mmap" if request.param is has_no_room else "start_new_thread"
+    name = "ask_for" if request.param is has_no_room else "start_new_thread"
     monkeypatch.setattr(home, name, request.param)
     monkeypatch.setattr(sys, "unraisablehook", _report_unraisable)
 

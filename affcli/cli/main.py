@@ -3,13 +3,13 @@
 import errno
 import gc
 import sys
-from mmap import mmap
 from pathlib import Path
 
 from affcli.cli.commands import how_it_goes_on
 from affcli.cli.signals import SignalHandler, Stopped
 from affcli.cli.terminal import prepare_streams, say
 from affcli.errors import AffcliError, BadInputError, one_line
+from affcli.memory import ask_for
 
 OBJECTS_BETWEEN_COLLECTIONS = 100_000
 """New objects after which Python searches for cycles among them. Its own 700 is meant for programs
@@ -52,7 +52,7 @@ def _run(handler: SignalHandler) -> int:
     """Run the command; return its exit code, after a line about what ended it."""
     try:
         if "numpy" not in sys.modules:
-            mmap(-1, ROOM_FOR_NUMPY).close()
+            ask_for(ROOM_FOR_NUMPY)
         # Imported only now: a ctrl-C meanwhile is one line like any other.
         from affcli.cli.app import run  # noqa: PLC0415
 

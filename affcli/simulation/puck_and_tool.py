@@ -10,6 +10,7 @@ from pymunk._chipmunk_cffi import lib as chipmunk
 
 from affcli.core.geometry import ConvexPolygon, Point, Pose
 from affcli.core.workspace import PuckGeometry, SurfaceFriction
+from affcli.memory import ask_for
 from affcli.simulation.physics_settings import PhysicsSettings
 from affcli.simulation.surface_friction import surface_friction
 from affcli.simulation.wrist_motion import STEP
@@ -17,6 +18,9 @@ from affcli.simulation.wrist_motion import STEP
 FAR_AWAY = (1e3, 1e3)
 """Where no tool touches the puck (in)."""
 AT_REST = (0.0, 0.0)
+ROOM = 4 << 20
+"""Bytes that are free where a simulation begins. The engine takes memory in blocks of 32 kB, and
+where it gets none the process ends (SIGSEGV)."""
 
 
 class PuckAndTool:
@@ -49,6 +53,7 @@ class PuckAndTool:
         friction: SurfaceFriction,
         settings: PhysicsSettings,
     ) -> None:
+        ask_for(ROOM)
         space = pymunk.Space()
         space.iterations = settings.iterations
         space.collision_slop = settings.collision_slop

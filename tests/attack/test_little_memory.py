@@ -15,7 +15,11 @@ from tests.cli.program import PATIENCE, PROGRAM, environment, names_in
 LITTLE, ENOUGH = 40_000, 240_000
 """Address space (kB) in which Python starts but `learn` cannot, and in which it can."""
 STEP, WIDE_STEP = 1_000, 40_000
-LEARN = ("learn", "--tool", "t-hook", "--behaviors", "60", "--db", "my.db")
+WORKERS = "2 workers cannot be started"
+COMMANDS = (
+    ("learn", "--tool", "t-hook", "--behaviors", "60"),
+    ("learn", "--tool", "t-hook", "--tool", "stick", "--behaviors", "60", "--workers", "2"),
+)
 
 
 def confine(kilobytes: int) -> None:
@@ -25,14 +29,15 @@ def confine(kilobytes: int) -> None:
 
 @pytest.mark.fault(46)
 @pytest.mark.torture
+@pytest.mark.parametrize("args", COMMANDS, ids=("alone", "with workers"))
 def test_with_too_little_memory_learn_says_so(
-    tmp_path: Path, torture: bool, tell: Callable[[str], None]
+    args: tuple[str, ...], tmp_path: Path, torture: bool, tell: Callable[[str], None]
 ) -> None:
-    """It hung, or OpenBLAS or a traceback ended it."""
+    """It hung, or OpenBLAS, a traceback or the physics engine ended it."""
     ends: Counter[str] = Counter()
     for kilobytes in range(LITTLE, ENOUGH + 1, STEP if torture else WIDE_STEP):
         ended = subprocess.run(
-            [*PROGRAM, *LEARN],
+            [*PROGRAM, *args, "--db", "my.db"],
             cwd=tmp_path,
             env=environment(),
             stdin=subprocess.DEVNULL,
@@ -45,8 +50,9 @@ def test_with_too_little_memory_learn_says_so(
         if ended.returncode == 0:
             ends["learned"] += 1
         else:
-            said = (ended.returncode, ended.stderr)
-            assert said == (4, f"affcli: {OUT_OF_MEMORY}\n"), kilobytes
+            *first, last = ended.stderr.splitlines()
+            assert (ended.returncode, last) == (4, f"affcli: {OUT_OF_MEMORY}"), kilobytes
+            assert all(WORKERS in line for line in first), (kilobytes, first)
             ends["in a line"] += 1
         assert set(names_in(tmp_path)) <= {"my.db"}, kilobytes
         (tmp_path / "my.db").unlink(missing_ok=True)
