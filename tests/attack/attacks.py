@@ -11,15 +11,21 @@ from tests.fuzz.commands import FITTING, PLAUSIBLE, TOOLS, USUAL, Command, every
 
 Args = tuple[str, ...]
 
+BORROWED = ("--transfer-from", "1,2", "--config", "settings.toml")
+GRASPS = ("--binding", "grasp", "--binding", "grasp:grasp_point=7")
 WRITERS: tuple[Args, ...] = (
     ("learn", "--tool", "TOOL", "--behaviors", "SOME", "--seed", "SEED"),
     ("learn", "--tool", "TOOL", "--seed", "SEED", "--config", "settings.toml"),
     ("learn", "--resume"),
-    ("learn", "--tool", "fork", "--minutes", "0", "--transfer-from", "1,2", "--seed", "SEED"),
+    ("learn", "--tool", "fork", "--minutes", "0", *BORROWED, "--seed", "SEED"),
+    ("learn", "--tool", "fork", "--behaviors", "SOME", *BORROWED, "--seed", "SEED"),
+    ("learn", "--tool", "TOOL", "--behaviors", "SOME", *GRASPS, "--seed", "SEED"),
+    ("learn", "--tool", "TOOL", "--tool", "fork", "--minutes", "6", "--workers", "2"),
     ("invent", "--tool", "TOOL", "--minutes", "6", "--seed", "SEED"),
     ("solve", "--goal", "GOAL"),
     ("solve", "--goal", "GOAL", "--tool", "t-hook", "--start", "2"),
     ("solve", "--goal", "GOAL", "--run", "2", "--explain", "--json"),
+    ("solve", "--goal", "GOAL", "--run", "14", "--planner", "lookahead"),
     ("break-tool", "--becomes", "TOOL"),
     ("verify", "--update"),
     ("verify", "--update", "--rows", "12", "--shape", "TOOL", "--seed", "SEED"),
@@ -34,9 +40,8 @@ WRITERS: tuple[Args, ...] = (
 """What writes into a database, or a copy of it; `db upgrade` is given one of an older schema."""
 WRITING = {"learn", "solve", "break-tool", "reproduce", "db upgrade", "db backup"}
 WRITING |= {"experiment", "invent", "import", "runs note", "runs delete", "db merge"}
-NOT_THERE = {"compare", "figure compare", "figure plan", "figure transfer"}
-"""What needs two conditions of one seed, a plan, or a run that borrowed: the database under attack
-has none."""
+NOT_THERE = {"compare", "figure compare", "figure plan"}
+"""What needs two conditions of one seed, or a plan: the database under attack has none."""
 MOST_READ = {"figure", "report", "replay"}
 """Half of what is drawn of all commands begins so: it reads most of a database."""
 BY_WORD = {"--robots": ("1", "2"), "--workers": ("1",), "--speed": ("1000",)}
@@ -161,7 +166,7 @@ NEED: dict[str, Args] = {
     "which": ("nearer",),
     "figure row": ("1", "--out", "new.svg", "--force"),
     "figure plan": ("1", "1", "--out", "new.svg", "--force"),
-    "figure transfer": ("--run", "1", "--out", "new.svg", "--force"),
+    "figure transfer": ("--run", "14", "--out", "new.svg", "--force"),
     "figure trial": ("1", "--out", "new.svg", "--force"),
     "figure prediction": ("--pushes", "3", "--out", "new.svg", "--force"),
 }

@@ -9,8 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from tests.attack.attacks import BORROWED
 from tests.attack.laboratory import Laboratory
 from tests.cli.forked import Forked
+from tests.cli.program import done
 from tests.fuzz.budget import FIRST_SEED
 
 MINUTES = "AFFCLI_ATTACK_MINUTES"
@@ -26,6 +28,7 @@ FEW = 4
 def laboratory(furnished: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Laboratory]:
     home = tmp_path_factory.mktemp("attacked") / "home"
     shutil.copytree(furnished, home)
+    done("learn", "--tool", "l-stick", "--minutes", "0", *BORROWED, "--db", "filled.db", cwd=home)
     attacked = Laboratory(home, Forked(), Forked())
     yield attacked
     attacked.program.close()
