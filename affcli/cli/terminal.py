@@ -340,7 +340,8 @@ def _again_and_again(tell: "Callable[[], object]", seconds: float) -> "Iterator[
         yield
     finally:
         over.set()
-        telling.acquire()  # what is being told is told to its end
+        # What is being told is told to its end, unless that never comes.
+        telling.acquire(timeout=A_MINUTE)
 
 
 def followed(items: "Iterable[T]", description: str, total: int, noun: str) -> "list[T]":
