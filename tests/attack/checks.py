@@ -26,6 +26,9 @@ CHANGING = {
     "experiment": {"status", "finished_at"},
 }
 """Columns that change after a record is saved; all the others stay for ever."""
+FAILED = "failed_robot"
+TRIED_ROBOTS = f"SELECT session_id, robot FROM {FAILED} UNION SELECT session_id, robot FROM trial"
+"""A robot that failed is tried again: the note of it stays until the robot has lived."""
 TRIED = "SELECT affordance_id, replicated FROM"
 STORED = "(SELECT id FROM trial WHERE counters = 'stored')"
 USES = (f"{TRIED} replication", f"{TRIED} step WHERE trial_id IN {STORED}")
@@ -63,7 +66,8 @@ def contents(database: Path) -> Contents:
         for (table,) in tables:
             about = driver.execute(f"PRAGMA table_info({table})").fetchall()
             kept = [name for _, name, *_ in about if name not in CHANGING.get(table, ())]
-            held[table] = set(driver.execute(f"SELECT {', '.join(kept)} FROM {table}"))
+            query = TRIED_ROBOTS if table == FAILED else f"SELECT {', '.join(kept)} FROM {table}"
+            held[table] = set(driver.execute(query))
     return held
 
 
