@@ -14,7 +14,7 @@ from tests.cli.program import PATIENCE, PROGRAM, environment, names_in
 
 LITTLE, ENOUGH = 40_000, 240_000
 """Address space (kB) in which Python starts but `learn` cannot, and in which it can."""
-STEP, WIDE_STEP = 1_000, 40_000
+STEP, WIDE_STEP = 4_000, 40_000
 WORKERS = "2 workers cannot be started"
 COMMANDS = (
     ("learn", "--tool", "t-hook", "--behaviors", "60"),
