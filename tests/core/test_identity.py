@@ -7,7 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from affcli.core.identity import LONGEST_TEXT, Component, canonical_json, key_of, stream_number
+from affcli.core.identity import (
+    LONGEST_TEXT,
+    Component,
+    canonical_json,
+    key_of,
+    package_text,
+    stream_number,
+)
 from affcli.errors import BadInputError
 
 names = st.from_regex(r"[a-z][a-z0-9-]{0,12}", fullmatch=True)
@@ -86,3 +93,17 @@ def test_keys_and_streams_stay_the_same_in_every_version() -> None:
     assert key_of({"b": 1.0, "a": [None, "x"]}) == key
     streams = [2404638097, 1015380742]
     assert [stream_number(name) for name in ("stick", "t-hook")] == streams
+
+
+@pytest.mark.parametrize(
+    ("name", "version", "text"),
+    [
+        ("My_Planner", "1.0", "my-planner-1.0"),
+        ("planner", "1.0-RC 1", "planner-1.0.rc.1"),
+        ("planner", "(dev)", "planner-0.dev"),
+        ("-p.q-", "x2+local", "p-q-0.x2+local"),
+    ],
+)
+def test_a_package_is_named_as_packages_are_compared(name: str, version: str, text: str) -> None:
+    assert package_text(name, version) == text
+    assert str(Component.parse(f"name@2@{text}")) == f"name@2@{text}"

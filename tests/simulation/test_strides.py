@@ -55,3 +55,24 @@ def test_strides_leave_the_puck_where_equal_short_steps_do(x: float) -> None:
     assert simple.y > 28.0
     assert math.dist(quick.point, simple.point) < 0.01
     assert quick.angle == pytest.approx(simple.angle, abs=math.radians(0.5))
+
+
+def test_a_push_that_is_simulated_whole_leaves_no_step_out() -> None:
+    """The tool passes the puck: there is nothing to simulate, and nothing comes of it."""
+    puck = Pose(9.0, 24.0, 0.5)
+    way = (puck, Point(0.0, 10.0), Point(0.0, 1.0), trapezoid(5.0, 5.0, 40.0))
+
+    def steps(*, whole: bool) -> int:
+        by, taken = simulator("t-hook"), []
+        step = by._bodies.step
+
+        def counted(seconds: float) -> None:
+            taken.append(seconds)
+            step(seconds)
+
+        by._bodies.step = counted
+        assert by.push(*way, whole=whole) == puck
+        return len(taken)
+
+    assert steps(whole=False) == 0
+    assert steps(whole=True) > 10

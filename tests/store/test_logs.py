@@ -5,7 +5,7 @@ import pytest
 from affcli.core.log import LogFile, LogLine, LogSource
 from affcli.errors import DatabaseError
 from affcli.store import Store
-from tests.store.records import learned
+from tests.store.records import learned, learning_steps
 
 FILES = (LogFile("b.txt", "b" * 64), LogFile("unused.txt", "c" * 64), LogFile("a.txt", "a" * 64))
 SOURCE = LogSource("a robot", None, "who, 2026", {"columns": {"x": 1}}, 4, FILES)
@@ -31,3 +31,16 @@ def test_a_source_that_cannot_be_read_is_named(store: Store) -> None:
         connection.exec_driver_sql("update log set map = '{'")
     with pytest.raises(DatabaseError, match=f"the log of run {run.id}"):
         store.logs.source(run.id)
+
+
+def test_what_each_behavior_did_is_told_in_their_order(store: Store) -> None:
+    run, made = learned(store, 3), [record for record, _ in learning_steps(3)]
+    told = store.learning.tries(run.id)
+    assert [one.step for one in told] == [1, 2, 3]
+    assert [one.call for one in told] == [record.execution.call for record in made]
+    assert [one.moved for one in told] == [record.affordance is not None for record in made]
+    for one, record in zip(told, made, strict=True):
+        assert one.at == record.start.object_position
+        assert one.offset == (record.start.wrist_to_object_x, record.start.wrist_to_object_y)
+        off = (record.end.object_x - one.at.x, record.end.object_y - one.at.y)
+        assert (one.seen.dx, one.seen.dy) == off
