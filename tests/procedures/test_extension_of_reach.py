@@ -10,14 +10,14 @@ from hypothesis import strategies as st
 from affcli.core.affordance import Affordance, replicates
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.behavior import POSITION_WRIST, BehaviorCall, ExecutionStatus
-from affcli.core.choice import Choice, Situation
+from affcli.core.choice import Choice, Reason, Situation
 from affcli.core.geometry import Point
-from affcli.core.observation import movement
+from affcli.core.observation import Observation, movement
 from affcli.core.ports import Planner
 from affcli.core.task import GoalRegion
 from affcli.core.tool import ToolName
 from affcli.core.trial import Outcome, StepRecord, TrialEnd
-from affcli.errors import SimulationDivergedError
+from affcli.errors import PartFailedError, SimulationDivergedError
 from affcli.planning.lookahead import Lookahead
 from affcli.planning.nested_query import NestedQuery
 from affcli.procedures.extension_of_reach import TrialLimits, extension_of_reach
@@ -275,6 +275,24 @@ def test_a_simulation_that_diverges_makes_the_trial_invalid(behaviors: int, take
     assert trial.end.outcome is Outcome.INVALID
     assert len(trial.steps) == taken
     assert trial.end.steps == taken
+
+
+def test_a_sensor_that_fails_before_the_first_step_ends_the_trial_without_one() -> None:
+    class Broken(FakeSensor):
+        def observe(self) -> Observation:
+            raise PartFailedError("the sensor broke")
+
+    world = FakeTable(goal=FAR_GOAL)
+    running = extension_of_reach(
+        *(FakeRobot(world), Broken(world), FakeExperimenter(world), table_of(AHEAD_5)),
+        *(BINDING, TrialLimits()),
+        planner=NestedQuery(),
+    )
+    with pytest.raises(StopIteration) as stopped:
+        next(running)
+    end = stopped.value.value
+    assert (end.outcome, end.steps) == (Outcome.INVALID, 0)
+    assert end.last_reasons == (Reason("the sensor broke"),)
 
 
 @pytest.mark.fault(29)

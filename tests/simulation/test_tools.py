@@ -6,6 +6,7 @@ from itertools import combinations
 import pytest
 import shapely
 
+from affcli import registry
 from affcli.core.affordance_table import COLOR_TOLERANCE
 from affcli.core.geometry import Point
 from affcli.core.tool import PUCK_COLOR, Color, Tool, ToolName
@@ -131,3 +132,10 @@ def test_painting_a_tool_changes_its_colour_alone() -> None:
     assert painted.color == color
     assert (painted.name, painted.parts) == (stick.name, stick.parts)
     assert stick.color == TOOL_COLORS[ToolName("stick")]
+
+
+@pytest.mark.parametrize("name", registry.parts("tools"))
+def test_every_part_of_every_tool_is_as_thick_as_the_geometry_says(name: str) -> None:
+    for part in registry.tool(name, GEOMETRY).parts:
+        left, bottom, right, top = part.outline.bounds
+        assert min(right - left, top - bottom) == pytest.approx(GEOMETRY.part_width)

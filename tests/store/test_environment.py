@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from affcli.store import Fact, database_info, environment, environment_facts
+from affcli.store.database_file import REVISION
 from affcli.store.environment import file_system
 
 MOUNTS = """\
@@ -117,6 +118,10 @@ def test_a_database_of_a_newer_affcli_is_pointed_out(database: Path) -> None:
     assert found.state == "bad"
     assert found.value.endswith(": install a newer affcli")
     assert "its schema is at revision 9999" in found.value
+    copy = database.with_name(f"{database.name}.{REVISION}.backup")
+    copy.touch()
+    said = facts(database)["database"].value
+    assert said.endswith(f": install a newer affcli, or go on with {copy}, from before the upgrade")
 
 
 def test_little_room_is_pointed_out(database: Path, monkeypatch: pytest.MonkeyPatch) -> None:
