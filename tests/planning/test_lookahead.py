@@ -17,7 +17,15 @@ from affcli.core.choice import Choice, Reason, Situation
 from affcli.core.geometry import Point, Pose
 from affcli.core.task import GoalRegion
 from affcli.errors import BadInputError
-from affcli.planning.lookahead import INSIDE, SMALL_GOAL, Lookahead, _HalfPlanes
+from affcli.planning.lookahead import (
+    INSIDE,
+    NO_WAY,
+    SMALL_GOAL,
+    Lookahead,
+    _apart,
+    _HalfPlanes,
+    _Layer,
+)
 from affcli.planning.one_step import OneStep
 from affcli.planning.row_model import RowModel
 from tests.factories import affordance, goal_at, observation, places, situation, table_of
@@ -237,3 +245,13 @@ def test_a_path_ends_at_the_goal_where_it_ends_well_inside_each_edge(
     for out, held in ((off - 1e-6, True), (off + 1e-6, False)):
         x, y = ((3.0, 20.0) + out * ways).T
         assert _HalfPlanes(goal).hold(x, y).tolist() == [held] * 4
+
+
+def test_of_the_paths_those_are_gone_on_from_that_may_still_be_the_best() -> None:
+    """Not one that is at the goal, nor one that is as long as the best already."""
+    x, y, none = np.array([0.0, 5.0, 10.0, 15.0]), np.zeros(4), np.zeros(4, dtype=np.intp)
+    worth = np.array([2.0, NO_WAY + 3.0, NO_WAY + 1.0, NO_WAY + 2.0])
+    cost = np.array([2.0, 1.0, 2.0, 0.5])
+    layer = _Layer(x, y, cost, none, none, none, worth)
+    assert _apart(layer, beam=9, best=3.0).tolist() == [3, 1]
+    assert _apart(layer, beam=1, best=3.0).tolist() == [3]
