@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from affcli.core.affordance import REPLICATION_ANGLE_DEGREES, replicates
+from affcli.core.affordance import REPLICATION_ANGLE_DEGREES, Affordance, replicates
 from affcli.core.geometry import Point
 from affcli.core.observation import Movement
 from tests.factories import EIGHTH, affordance, eighths, moved_by, places
@@ -98,3 +98,10 @@ def test_how_far_it_moved_does_not_count_beyond_the_threshold() -> None:
     """§5.2 compares directions alone."""
     assert replicates(moved_by(0.0, 5.0), moved_by(0.0, 0.625))
     assert replicates(moved_by(0.0, 0.625), moved_by(0.0, 50.0))
+
+
+def test_a_row_of_which_nothing_else_is_said_was_made_with_the_wrist_straight_and_once() -> None:
+    row = affordance(1)
+    plain = Affordance(row.step, row.binding, row.exploratory, row.start, row.end)
+    assert (plain.wrist_angle, plain.travel, plain.truncated) == (0.0, Point(0.0, 0.0), False)
+    assert (plain.times_used, plain.times_successful) == (1, 1)
