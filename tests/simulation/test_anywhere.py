@@ -37,6 +37,16 @@ def test_some_tool_reaches_the_start_and_the_goal(task: Task) -> None:
         assert any(touched(tool, place) for tool in TOOLS)
 
 
+def test_the_places_are_all_over_what_the_tools_reach() -> None:
+    """Uniformly: about as many in each half of it, each way."""
+    top = WORKSPACE.table
+    drawn = [place for task in TASKS for place in (task.start, task.goal.center)]
+    for lowest, at in ((-top.half_width, [p.x for p in drawn]), (top.near, [p.y for p in drawn])):
+        middle = (min(at) + max(at)) / 2.0
+        assert middle - lowest > 6.0
+        assert len(drawn) / 3 < sum(one < middle for one in at) < 2 * len(drawn) / 3
+
+
 def test_no_start_lies_over_its_goal_or_under_a_tool_that_is_laid_out() -> None:
     x, y = WORKSPACE.wrist_start
     for task in TASKS:
