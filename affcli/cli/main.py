@@ -43,9 +43,15 @@ def main() -> int:
         return _fail("the working folder is gone; cd to one that is there", BadInputError.exit_code)
     handler = SignalHandler()
     try:
+        handler.listen()
         return _run(handler)
-    except Stopped:  # it came between an error and its line
+    except Stopped:  # it came before the command began, or between an error and its line
         return _stopped(handler)
+    except BaseException as error:
+        if not _ran_out_of_memory(error):
+            raise
+    # Only now: until the error is let go of, it holds what the command had in memory.
+    return _fail(OUT_OF_MEMORY, BadInputError.exit_code)
 
 
 def _run(handler: SignalHandler) -> int:
@@ -66,8 +72,6 @@ def _run(handler: SignalHandler) -> int:
             return _stopped(handler)
         if isinstance(error, AffcliError):
             return _fail(str(error), error.exit_code)
-        if _ran_out_of_memory(error):
-            return _fail(OUT_OF_MEMORY, BadInputError.exit_code)
         raise
     return code
 

@@ -23,7 +23,8 @@ class SignalHandler:
     signum: int | None = None
     """The signal that came; None if none did."""
 
-    def __init__(self) -> None:
+    def listen(self) -> None:
+        """Raise `Stopped` from now on when a signal comes; it may be while this is done."""
         for signum in (signal.SIGINT, signal.SIGTERM):
             signal.signal(signum, self)
         signal.signal(signal.SIGALRM, _raise_again)

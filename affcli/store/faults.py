@@ -48,7 +48,7 @@ REMEDIES = {
 NO_TEXT = "Could not decode to UTF-8"
 """What Python's driver says, without a code, of text that is not in UTF-8."""
 
-NO_COLUMN = ("no such column: ", "has no column named ")
+CHANGED = ("no such column: ", "has no column named ", "foreign key mismatch")
 """What SQLite says, with the code of any mistake, of a table that was changed."""
 
 
@@ -70,7 +70,7 @@ def faults_named(path: Path) -> Iterator[None]:
                 f"{one_line(path)}: holds text that is none and that affcli did not write; restore "
                 "a copy of the file"
             ) from error
-        if code and any(words in said for words in NO_COLUMN):
+        if code and any(words in said for words in CHANGED):
             raise DatabaseError(
                 f"{one_line(path)}: damaged, {said}; restore a copy of the file"
             ) from error

@@ -22,6 +22,7 @@ from tests.cli.program import (
     contents,
     done,
     ending,
+    one_printable_line,
     refused,
     rows,
     started,
@@ -247,6 +248,38 @@ def test_stopped_while_it_says_what_was_wrong_it_ends_at_once(signum: signal.Sig
         check=False,
     )
     assert (ended.returncode, ended.stdout, ended.stderr) == (-signum, "", "")
+
+
+LISTENING = """
+import os, signal, sys
+from affcli.cli import main
+
+begun = signal.signal
+
+def interrupted(signum, does):
+    before = begun(signum, does)
+    if signum == signal.SIGTERM and does is not signal.SIG_DFL:
+        os.kill(os.getpid(), int(sys.argv[-1]))
+    return before
+
+signal.signal = interrupted
+sys.exit(main.main())
+"""
+"""The program, sent a signal while it begins to listen for them."""
+
+
+@pytest.mark.fault(45)
+@pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGTERM])
+def test_stopped_while_it_begins_to_listen_it_says_so(signum: signal.Signals) -> None:
+    ended = subprocess.run(
+        [sys.executable, "-c", LISTENING, "solve", str(int(signum))],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (ended.returncode, ended.stdout) == (128 + signum, "")
+    assert one_printable_line(ended.stderr).startswith("affcli: stopped; what was saved is kept")
 
 
 @pytest.mark.torture

@@ -20,13 +20,13 @@ from affcli.core.behavior import (
     composed,
     composed_motion,
 )
-from affcli.core.change_detection import change_detected
+from affcli.core.change_detection import MOVEMENT_THRESHOLD, change_detected
 from affcli.core.geometry import Point, Pose
 from affcli.core.motion import Turn
 from affcli.core.part import Part
 from affcli.core.ports import Explorer
 from affcli.core.trial import BabblingRecord
-from affcli.exploration.contact_map import MARGIN, PROBABILITY, ContactMap
+from affcli.exploration.contact_map import DEPTH, MARGIN, PROBABILITY, ContactMap
 from affcli.exploration.focused import Focused
 from affcli.exploration.grid import Grid, read, written
 from affcli.exploration.memory import Memory
@@ -65,8 +65,16 @@ def test_what_a_push_passed_is_clear_and_where_it_met_the_attractor_is_contact(
     for gone in np.arange(0.0, gap - 2.0 * CELL, CELL):
         x, y = way.standing(place, np.array(gone / length))
         assert contact(known, float(x), float(y)) < PRIOR
-    if length > CELL:
-        assert known.contact.max() == max(PROBABILITY.values())
+    if length > 0.0:
+        clear, met = (
+            way.standing(place, np.array(max(0.0, far) / length))
+            for far in (gap - MOVEMENT_THRESHOLD, gap + DEPTH)
+        )
+        i, j = (int(number) for number in known.grid.cells(*met))
+        inside = 0 < i < known.grid.shape[0] - 1 and 0 < j < known.grid.shape[1] - 1
+        # A move and a turn that cancel each other leave it in a cell that was found clear.
+        if inside and math.dist(clear, met) > math.sqrt(2.0) * CELL:
+            assert known.contact.max() == max(PROBABILITY.values())
 
 
 @settings(max_examples=30)

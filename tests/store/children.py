@@ -72,7 +72,7 @@ def wait_for_lock(path: Path) -> None:
 
     Python's own is not enough: an exception that falls into a callback is swallowed.
     """
-    SignalHandler()
+    SignalHandler().listen()
     with open_store(path, create=False, write=True) as store:
         ready()
         write_something(store)

@@ -1,6 +1,8 @@
 """Damaged pages: found when the file is opened, or in a large one when they are read."""
 
+import sqlite3
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -9,7 +11,7 @@ from affcli.errors import DatabaseError
 from affcli.store import Store, check, open_store
 from affcli.store.database_file import CHECKED_UP_TO
 from tests.factories import learning_spec
-from tests.store.records import learned
+from tests.store.records import begun, learned
 
 PAGE = 4096
 
@@ -74,3 +76,15 @@ def damage_is_found(path: Path) -> bool:
         return any(finding.wrong for finding in check(path))
     except DatabaseError:
         return True
+
+
+def test_a_table_that_another_one_names_in_vain_is_damage(database: Path) -> None:
+    """Emptied of its columns: SQLite finds that out when a row is to refer to it."""
+    with closing(sqlite3.connect(database)) as driver, driver:
+        driver.execute("DROP TABLE experiment")
+        driver.execute("CREATE TABLE experiment (x)")
+    with (
+        open_store(database, create=False, write=True) as store,
+        pytest.raises(DatabaseError, match=f"^{database}: damaged, .*foreign key mismatch"),
+    ):
+        begun(store, "reproduce")
