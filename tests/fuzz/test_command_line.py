@@ -27,7 +27,7 @@ def writes(line: CommandLine) -> bool:
 def named_places(line: CommandLine, home: Path) -> list[str]:
     """Return the files that a command line names, by their whole paths."""
     named = [value for _, value in line.env] + ["affcli.db"]
-    if line.command.words[0] == "new":
+    if line.command.words[:1] == ("new",):
         named += [f"{arg}.toml" for arg in line.args]
     for at, arg in enumerate(line.args):
         option, _, value = arg.partition("=")
