@@ -27,13 +27,19 @@ def writes(line: CommandLine) -> bool:
 def named_places(line: CommandLine, home: Path) -> list[str]:
     """Return the files that a command line names, by their whole paths."""
     named = [value for _, value in line.env] + ["affcli.db"]
-    if line.command.words[:1] == ("new",):
-        named += [f"{arg}.toml" for arg in line.args]
+    makes = line.command.words[:1] == ("new",)  # a file, or the folder of a package
+    if makes:
+        slugs = [arg.replace(" ", "-") for arg in line.args]
+        named += [*slugs, *(f"{slug}.toml" for slug in slugs)]
     for at, arg in enumerate(line.args):
         option, _, value = arg.partition("=")
         if option in PLACES:
             named.append(value or next(iter(line.args[at + 1 :]), ""))
-    return [os.path.normpath(os.path.join(home, name)) for name in named]  # noqa: PTH118
+    places = [os.path.normpath(os.path.join(home, name)) for name in named]  # noqa: PTH118
+    folders = [
+        Path(place) for place in places if makes and Path(place) not in {home, *home.parents}
+    ]
+    return [*places, *(str(file) for folder in folders for file in folder.rglob("*"))]
 
 
 def came_of(made: str, named: list[str]) -> bool:
