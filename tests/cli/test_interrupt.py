@@ -221,6 +221,17 @@ def test_stopped_before_affcli_listens_it_is_silent(module: str, signum: signal.
     assert (ended.returncode, ended.stdout, ended.stderr) == (-signum, "", "")
 
 
+def sent_to_itself(program: str, signum: signal.Signals) -> subprocess.CompletedProcess[str]:
+    """Run `solve` in a program that sends itself a signal; see `TELLING` and `LISTENING`."""
+    return subprocess.run(
+        [sys.executable, "-c", program, "solve", str(int(signum))],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
 TELLING = """
 import os, sys
 from affcli.cli import main
@@ -240,13 +251,7 @@ sys.exit(main.main())
 @pytest.mark.fault(45)
 @pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGTERM])
 def test_stopped_while_it_says_what_was_wrong_it_ends_at_once(signum: signal.Signals) -> None:
-    ended = subprocess.run(
-        [sys.executable, "-c", TELLING, "solve", str(int(signum))],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    ended = sent_to_itself(TELLING, signum)
     assert (ended.returncode, ended.stdout, ended.stderr) == (-signum, "", "")
 
 
@@ -271,13 +276,7 @@ sys.exit(main.main())
 @pytest.mark.fault(45)
 @pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGTERM])
 def test_stopped_while_it_begins_to_listen_it_says_so(signum: signal.Signals) -> None:
-    ended = subprocess.run(
-        [sys.executable, "-c", LISTENING, "solve", str(int(signum))],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    ended = sent_to_itself(LISTENING, signum)
     assert (ended.returncode, ended.stdout) == (128 + signum, "")
     assert one_printable_line(ended.stderr).startswith("affcli: stopped; what was saved is kept")
 
