@@ -104,7 +104,7 @@ reproduce: $(INSTALLED)
 	$(AFFCLI) reproduce --robots $(ROBOTS) --seed $(SEED) $(if $(WORKERS),--workers $(WORKERS)) --db reproduce.db
 
 ## bench         measure the speed, also beside other engines, which it installs apart; figures in bench.json
-bench: $(INSTALLED)
+bench: $(INSTALLED_DEV)
 	$(VENV)/bin/python experiments/speed/bench.py --json bench.json
 
 ## another-world an environment for KinDER's hook world, .venv/another-world, and the tests of what plays in it
