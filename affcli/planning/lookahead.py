@@ -8,12 +8,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from affcli.core.affordance import PROBABILITY_THRESHOLD, REPLICATION_ANGLE_DEGREES
 from affcli.core.affordance_table import Rows
 from affcli.core.choice import Candidate, Choice, Move, Reason, Reasons, Situation
-from affcli.core.goal import Goal
 from affcli.core.part import Part
 from affcli.core.setting import Setting
 from affcli.planning.neighbours import smoothed
@@ -25,35 +23,29 @@ from affcli.planning.nested_query import (
     usable_rows,
 )
 from affcli.planning.one_step import candidates
+from affcli.planning.plans import (
+    CLOSE,
+    FURTHER,
+    REPOSITIONING,
+    STEPS_INSIDE,
+    HalfPlanes,
+    told,
+)
 from affcli.planning.row_model import CELL, LARGEST_CELL, Ends, Floats, RowModel, first_in_cells
 
 DEEPEST, WIDEST = 8, 400
 """Limits of a search: moves ahead, and places from which each further move is looked for."""
-INSIDE = 0.1
-"""A path ends at the goal when it ends so far inside its outline (in), or 0.4 of the way to its
-middle where the goal is small: what is seen and done is never exact."""
-SMALL_GOAL = 0.4
 MOST_ROWS = 400
 """Rows among which the second and further moves are looked for. The first is chosen among all: of a
 later one it is enough to know that there is one like it, for it is planned anew."""
 STEPS_TO_GO = 1.0
 """Steps that each inch to the goal is taken to cost a path that does not lead there: more than it
 does, so that a path that comes nearer is worth its further moves."""
-STEPS_INSIDE = 0.05
-"""Of two paths to the goal that are equally long the one is better that ends nearer to its middle:
-an inch is worth so many steps."""
-REPOSITIONING = 0.02
-"""An inch that the wrist is carried to the first row is worth so many inches of distance: ties."""
 NO_WAY, DEAD_END = 1e3, 1e5
 """Steps that are added to a path that does not lead to the goal, and to one after which no row can
 be used: both are more than any path has."""
-FURTHER = 1.0
-"""Steps that it costs on top to use a row whose behavior met the edge of the reach where it will
-not: where that ends is not known, and a further step has to make up for it."""
 LOOKED_AT = 40
 """Of the paths that do not lead to the goal so many are looked at for whether a row is left."""
-CLOSE = 3
-"""Plans told beside the one that is followed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,8 +105,8 @@ class Lookahead:
             # Of the rows within reach none should do anything: that is why there is no plan.
             return Choice(None, (*reasons, Reason("expected to move the attractor", 0)))
         plans = [search.plan(int(row)) for row in first]
-        told = [_told(*plan, followed=not number) for number, plan in enumerate(plans)]
-        return Choice(int(first[0]), (*reasons, *told))
+        weighed = [told(*plan, followed=not number) for number, plan in enumerate(plans)]
+        return Choice(int(first[0]), (*reasons, *weighed))
 
     def candidates(self, situation: Situation) -> tuple[Candidate, ...]:
         """Return the first rows of paths, the best path first, each with where itself leads."""
@@ -169,7 +161,7 @@ class _Search:
         dy = table.offset_y - (seen.object_y - wrist.y)
         way = np.hypot(dx, dy)
         self._carried = REPOSITIONING * (way if anew is None else way + anew)
-        self._goal = _HalfPlanes(situation.goal)
+        self._goal = HalfPlanes(situation.goal)
         self._layers = self._searched(depth, beam)
         self._avoid_dead_ends()
         self._least = np.full(len(table), np.inf)
@@ -188,8 +180,10 @@ class _Search:
         where[begun.row] = np.arange(len(begun.row))
         return begun.x[where[rows]], begun.y[where[rows]]
 
-    def plan(self, first: int) -> tuple[float, tuple[Move, ...]]:
-        """Return the worth and the moves of the best path that begins with a row."""
+    def plan(self, first: int) -> tuple[float | None, tuple[Move, ...]]:
+        """Return the best path that begins with a row: the steps that it should take to the goal,
+        None when it does not lead there, and its moves.
+        """
         worth = self._least[first]
         number, at = next(
             (number, int(found[0]))
@@ -202,7 +196,7 @@ class _Search:
             place = float(layer.x[at]), float(layer.y[at])
             moves.append(Move(row.step, str(row.exploratory), *place))
             at = int(layer.parent[at])
-        return float(worth), tuple(reversed(moves))
+        return (float(worth) if worth < NO_WAY else None), tuple(reversed(moves))
 
     def _searched(self, depth: int, beam: int) -> list[_Layer]:
         """Return the paths of one move, of two, and so on, until no longer one can be better."""
@@ -259,26 +253,6 @@ class _Search:
             worths[number[i]][position[i]] += DEAD_END
 
 
-class _HalfPlanes:
-    """A goal as what lies well inside each edge of its outline."""
-
-    def __init__(self, goal: Goal) -> None:
-        self._edges = []
-        for a, b in goal.outline().edges:
-            length = math.dist(a, b)
-            nx, ny = (a.y - b.y) / length, (b.x - a.x) / length
-            middle = nx * (goal.center.x - a.x) + ny * (goal.center.y - a.y)
-            inside = min(INSIDE, SMALL_GOAL * middle)
-            self._edges.append((nx, ny, nx * a.x + ny * a.y + inside))
-
-    def hold(self, x: Floats, y: Floats) -> NDArray[np.bool_]:
-        """Tell for each place (n,), (n,) (in, table frame) whether it lies in the goal."""
-        held = np.ones(len(x), dtype=bool)
-        for nx, ny, least in self._edges:
-            held &= nx * x + ny * y >= least
-        return held
-
-
 def _apart(layer: _Layer, beam: int, best: float) -> Rows:
     """Return which paths are gone on from: those that are not at the goal and may still be better
     than the best so far; of those that end in one cell the best, in cells so large that they are
@@ -294,16 +268,6 @@ def _apart(layer: _Layer, beam: int, best: float) -> Rows:
         found = first_in_cells(cell, x, y, none)
     kept: Rows = order[found[:beam]]
     return kept
-
-
-def _told(worth: float, moves: tuple[Move, ...], *, followed: bool) -> Reason:
-    """Return a plan as a reason: what it is, and the steps that it should take to the goal; or
-    without a way there, how many moves it looks ahead.
-    """
-    if worth < NO_WAY:
-        return Reason("plan" if followed else "other plan", None, worth, moves)
-    name = "plan that ends short of the goal" if followed else "other plan that ends short"
-    return Reason(name, None, None, moves)
 
 
 PARTS = (

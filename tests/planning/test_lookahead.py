@@ -1,6 +1,5 @@
 """Planning ahead: what rows are expected to do from elsewhere, and which path of them is taken."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -9,60 +8,24 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from affcli import registry
-from affcli.core.affordance import Affordance
 from affcli.core.affordance_table import AffordanceTable
 from affcli.core.behavior import GRASP, BehaviorCall
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
-from affcli.core.choice import Choice, Reason, Situation
-from affcli.core.geometry import Point, Pose
-from affcli.core.task import GoalRegion
+from affcli.core.choice import Reason
+from affcli.core.geometry import Point
 from affcli.errors import BadInputError
 from affcli.planning.lookahead import (
-    INSIDE,
     NO_WAY,
-    SMALL_GOAL,
     Lookahead,
     _apart,
-    _HalfPlanes,
     _Layer,
 )
 from affcli.planning.one_step import OneStep
+from affcli.planning.plans import INSIDE, SMALL_GOAL, HalfPlanes
 from affcli.planning.row_model import RowModel
-from tests.factories import affordance, goal_at, observation, places, situation, table_of
-from tests.fakes import FakeRobot, FakeTable, everywhere
-
-HERE = Point(0.0, 0.0)
-RIGHT, LEFT, AWAY = (5.0, 0.0), (-5.0, 0.0), (0.0, 5.0)
-
-
-def row(
-    step: int,
-    moved: tuple[float, float],
-    offset: Point = HERE,
-    *,
-    used: int = 1,
-    successful: int = 1,
-) -> Affordance:
-    """Return a row whose wrist goes as far as it moves the attractor."""
-    made = affordance(step, moved=moved, offset=offset, used=used, successful=successful)
-    return replace(made, travel=Point(*moved))
-
-
-def standing(
-    rows: list[Affordance],
-    goal: GoalRegion,
-    reachable: Callable[[Point], bool] = everywhere,
-    wrist: Point = HERE,
-) -> Situation:
-    """Return a robot whose attractor lies at (0, 0)."""
-    robot = FakeRobot(FakeTable(wrist=Pose(*wrist)), reachable=reachable)
-    return situation(AffordanceTable(rows), observation(HERE, wrist=HERE), goal, robot)
-
-
-def steps_of(choice: Choice) -> list[int]:
-    """Return the rows of the plan that is followed, by the steps that made them."""
-    plans = [reason for reason in choice.reasons if reason.moves]
-    return [move.step for move in plans[0].moves]
+from tests.factories import affordance, goal_at, places, table_of
+from tests.fakes import FakeRobot, FakeTable
+from tests.planning.moving import AWAY, HERE, RIGHT, row, standing, steps_of
 
 
 @settings(deadline=None)
@@ -244,7 +207,7 @@ def test_a_path_ends_at_the_goal_where_it_ends_well_inside_each_edge(
     ways = np.array([(0.0, 1.0), (0.0, -1.0), (1.0, 0.0), (-1.0, 0.0)])
     for out, held in ((off - 1e-6, True), (off + 1e-6, False)):
         x, y = ((3.0, 20.0) + out * ways).T
-        assert _HalfPlanes(goal).hold(x, y).tolist() == [held] * 4
+        assert HalfPlanes(goal).hold(x, y).tolist() == [held] * 4
 
 
 def test_of_the_paths_those_are_gone_on_from_that_may_still_be_the_best() -> None:
