@@ -54,9 +54,10 @@ class ValueIteration:
     `Planner`.
 
     Choice: a use of a row costs as many steps as it is tried until it does what it did, one over
-    its replication probability. Where it then leaves the attractor is uncertain by 0.7 of a cell
-    along each axis. A place from which no row can be used costs `HOPELESS` steps, and so does one
-    that the rows do not lead to the goal from.
+    its replication probability. Whether it arrives is judged by where it is expected to end, as in
+    `Lookahead`; the place from which it goes on is uncertain by 0.7 of a cell along each axis. A
+    place from which no row can be used costs `HOPELESS` steps, and so does one that the rows do not
+    lead to the goal from.
 
     Args:
         cell: how far apart the places lie whose worth is worked out (in); between them it is
@@ -105,53 +106,69 @@ class ValueIteration:
 
 
 class _Between(NamedTuple):
-    """Places between those of a grid.
+    """Places between those that are known.
 
     Args:
-        at: the place of the grid to the lower left of each (n,), by its position.
-        u, v: how far on from there each lies along x and y (n,), in cells.
+        about: the four known places about each (4, n): to the lower and the upper left, to the
+            lower and the upper right.
+        u, v: how far on from the first of them each lies along x and y (n,), in cells.
     """
 
-    at: Rows
+    about: Rows
     u: Floats
     v: Floats
 
 
-@dataclass(frozen=True, slots=True)
-class _Grid:
-    """Places side by side.
+class _Places:
+    """The places of a grid that something is known of; all others count as one, the last.
 
     Args:
+        number: their numbers, ascending (n,).
         cell: how far apart they lie (in).
-        column, line: where they begin, in cells from the table frame's middle.
-        columns, lines: how many there are.
     """
 
-    cell: float
-    column: int
-    line: int
-    columns: int
-    lines: int
+    def __init__(self, number: Numbers, cell: float) -> None:
+        self._number, self._cell = number, cell
+        self._left, self._right = self.index(number - SIDE), self.index(number + SIDE)
+        self._below, self._above = self.index(number - 1), self.index(number + 1)
+
+    def __len__(self) -> int:
+        return len(self._number) + 1
+
+    def index(self, number: Numbers) -> Rows:
+        """Return which places these numbers are of (n,)."""
+        at = np.minimum(np.searchsorted(self._number, number), len(self._number) - 1)
+        return np.where(self._number[at] == number, at, len(self._number))
+
+    def unknown(self, x: Floats, y: Floats) -> Numbers:
+        """Return those that some places' worth depends on and that nothing is known of."""
+        return np.setdiff1d(_around(x, y, self._cell), self._number)
 
     def between(self, x: Floats, y: Floats) -> _Between:
-        """Return where places (n,), (n,) (in) lie; those outside lie on the edge."""
-        # The last place has none to its upper right.
-        across = np.clip(x / self.cell - self.column, 0.0, self.columns - 1.001)
-        along = np.clip(y / self.cell - self.line, 0.0, self.lines - 1.001)
-        column, line = across.astype(np.intp), along.astype(np.intp)
-        return _Between(column * self.lines + line, across - column, along - line)
+        """Return where places (n,), (n,) (in) lie."""
+        across, along = x / self._cell, y / self._cell
+        column, line = np.floor(across), np.floor(along)
+        number = column.astype(np.int64) * SIDE + line.astype(np.int64)
+        about = np.array([self.index(number + step) for step in (0, 1, SIDE, SIDE + 1)])
+        return _Between(about, across - column, along - line)
 
     def expected(self, worth: Floats, place: _Between) -> Floats:
         """Return the mean worth about some places (n,), weighed 1, 2, 1 along each axis, from that
-        of each place of the grid.
+        of each place that is known.
         """
-        spread = worth.reshape(self.columns, self.lines).copy()
-        spread[1:-1] = 0.25 * spread[:-2] + 0.5 * spread[1:-1] + 0.25 * spread[2:]
-        spread[:, 1:-1] = 0.25 * spread[:, :-2] + 0.5 * spread[:, 1:-1] + 0.25 * spread[:, 2:]
-        flat, right = spread.ravel(), place.at + self.lines
-        lower = flat[place.at] + place.v * (flat[place.at + 1] - flat[place.at])
-        upper = flat[right] + place.v * (flat[right + 1] - flat[right])
-        return np.asarray(lower + place.u * (upper - lower))
+        spread = _weighed(_weighed(worth, self._left, self._right), self._below, self._above)
+        left, upper_left, right, upper_right = spread[place.about]
+        left += place.v * (upper_left - left)
+        right += place.v * (upper_right - right)
+        return np.asarray(left + place.u * (right - left))
+
+
+def _weighed(worth: Floats, before: Rows, after: Rows) -> Floats:
+    """Return the mean worth of each place, weighed 2, and of its neighbours on two sides; that of
+    the last, which is all others, as it is.
+    """
+    mean = 0.25 * worth[before] + 0.5 * worth[:-1] + 0.25 * worth[after]
+    return np.append(mean, worth[-1])
 
 
 class _Ways:
@@ -168,7 +185,7 @@ class _Ways:
         table = situation.table
         self._model = RowModel.of(table)
         self.rows = self._model.thinned(np.arange(len(table)), MOST_ROWS)
-        begun = np.array([row.start.object_position for row in table]).reshape(-1, 2)
+        begun = np.array([row.start.object_position for row in table])
         new = np.union1d(more, _around(begun[:, 0], begun[:, 1], cell))
         known = np.zeros(0, dtype=np.int64)
         parts = []
@@ -178,33 +195,22 @@ class _Ways:
             ends = self.ends(situation, self.rows, x, y)
             parts.append((new[ends.place], *ends[1:]))
             new = np.setdiff1d(_around(ends.x, ends.y, cell), known)
-        number, self.row, x, y, self.further = (
-            np.concatenate(part) for part in zip(*parts, strict=True)
-        )
-        self._known, self._cell = known, cell
-        column, line = _decoded(known)
-        left, low = int(column.min()) - 1, int(line.min()) - 1
-        size = int(column.max()) - left + 2, int(line.max()) - low + 2
-        self.grid = _Grid(cell, left, low, *size)
-        order = np.argsort(number, kind="stable")
-        number, self.row, self.further = number[order], self.row[order], self.further[order]
-        self.x, self.y = x[order], y[order]
-        self._end = self.grid.between(self.x, self.y)
+        number, row, x, y, further = (np.concatenate(part) for part in zip(*parts, strict=True))
+        self.places = _Places(known, cell)
         # The ends from one place stand together: where those of each begin, and which it is.
-        self._begins = np.flatnonzero(np.diff(number, prepend=number[:1] - 1))
-        column, line = _decoded(number[self._begins])
-        self._from = (column - left) * self.grid.lines + line - low
-
-    def unknown(self, x: Floats, y: Floats) -> Numbers:
-        """Return the places whose worth some places' worth depends on and which are not known."""
-        return np.setdiff1d(_around(x, y, self._cell), self._known)
+        order = np.argsort(number, kind="stable")
+        self.row, self.further, self.x, self.y = (one[order] for one in (row, further, x, y))
+        begun_from, self._begins = np.unique(number[order], return_index=True)
+        self._from = self.places.index(begun_from)
+        self._end = self.places.between(self.x, self.y)
 
     def ends(self, situation: Situation, rows: Rows, x: Floats, y: Floats) -> Ends:
         """Return what rows do from some places."""
         return self._model.ends(rows, x, y, situation.reaches, situation.slides)
 
     def worth(self, steps: Floats, goal: HalfPlanes) -> Floats:
-        """Return the expected steps from each place of the grid to a goal.
+        """Return the expected steps from each place to a goal; from all others, the last, they are
+        hopeless.
 
         Args:
             steps: that a use of each row of the table costs (n,).
@@ -212,9 +218,9 @@ class _Ways:
         """
         cost = steps[self.row] + FURTHER * self.further
         goes_on = ~goal.hold(self.x, self.y)
-        worth = np.full(self.grid.columns * self.grid.lines, HOPELESS)
+        worth = np.full(len(self.places), HOPELESS)
         for _ in range(SWEEPS if len(self._begins) else 0):
-            whole = cost + goes_on * self.grid.expected(worth, self._end)
+            whole = cost + goes_on * self.places.expected(worth, self._end)
             better = worth.copy()
             better[self._from] = np.minimum(np.minimum.reduceat(whole, self._begins), HOPELESS)
             change, worth = float(np.abs(better - worth).max()), better
@@ -248,7 +254,7 @@ class _Worths:
     def of(
         self, situation: Situation, first: Ends, steps: Floats, goal: HalfPlanes
     ) -> tuple[_Ways, Floats]:
-        """Return the ways, and what each place of their grid is worth: for that arm and that goal.
+        """Return the ways, and what each of their places is worth: for that arm and that goal.
 
         Args:
             situation: where the robot stands.
@@ -258,7 +264,7 @@ class _Worths:
         """
         arm, more = (situation.reaches, situation.slides), np.zeros(0, dtype=np.int64)
         ways = self._ways.get(arm, lambda: _Ways(situation, self._cell, more))
-        if len(unknown := ways.unknown(first.x, first.y)):
+        if len(unknown := ways.places.unknown(first.x, first.y)):
             wider = (*arm, unknown.tobytes())
             ways = self._wider.get(wider, lambda: _Ways(situation, self._cell, unknown))
         key = (ways, situation.goal, steps.tobytes())
@@ -317,9 +323,9 @@ class _Outlook:
 
     def _expected(self, ends: Ends) -> Floats:
         """Return the steps that it is expected to take to the goal by some moves (n,)."""
-        grid = self._ways.grid
+        places = self._ways.places
         goes_on = ~self._goal.hold(ends.x, ends.y)
-        left = goes_on * grid.expected(self._worth, grid.between(ends.x, ends.y))
+        left = goes_on * places.expected(self._worth, places.between(ends.x, ends.y))
         return np.asarray(self._steps[ends.row] + FURTHER * ends.further + left)
 
 

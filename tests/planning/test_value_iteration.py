@@ -1,15 +1,22 @@
 """Planning over the whole table: what every place is worth, and the row that is used."""
 
+import math
 from dataclasses import replace
+from itertools import product
 
+import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from affcli.core.affordance import Affordance
 from affcli.core.choice import Reason, Situation
 from affcli.core.geometry import Point
+from affcli.core.task import GoalRegion
 from affcli.planning.lookahead import Lookahead
 from affcli.planning.one_step import OneStep
-from affcli.planning.value_iteration import HOPELESS, ValueIteration
+from affcli.planning.plans import HalfPlanes
+from affcli.planning.row_model import SIDE, RowModel
+from affcli.planning.value_iteration import HOPELESS, ValueIteration, _around, _Ways
 from tests.factories import goal_at, observation, table_of
 from tests.planning.moving import AWAY, LEFT, row, standing, steps_of
 
@@ -123,6 +130,64 @@ def test_where_the_attractor_lay_before_changes_no_answer() -> None:
     ]
     for _ in range(2):
         assert [ValueIteration().choose(one) for one in (robot, elsewhere)] == fresh
+
+
+@pytest.mark.parametrize("rows", [cross(2.0), cross(1.5, 4, 3), CORRIDOR], ids=len)
+def test_worths_are_those_that_a_plain_loop_finds(rows: list[Affordance]) -> None:
+    goal = goal_at(4.0, 0.5, 1.0)
+    here = standing(rows, goal, lambda p: abs(p.x) <= 3.0 and abs(p.y) <= 4.0)
+    around_here = _around(np.zeros(1), np.zeros(1), 1.0)
+    steps = here.table.times_used / here.table.times_successful
+    ways = _Ways(here, 1.0, around_here)
+    worth = ways.worth(steps, HalfPlanes(goal))
+    plain = plain_worths(here, steps, goal)
+    assert worth[-1] == HOPELESS
+    for (x, y), steps_left in plain.items():
+        number = np.array([round(x) * SIDE + round(y)])
+        assert worth[ways.places.index(number)[0]] == pytest.approx(steps_left, abs=0.02)
+
+
+def plain_worths(
+    here: Situation, steps: NDArray[np.float64], goal: GoalRegion
+) -> dict[tuple[float, float], float]:
+    """Return the expected steps from whole inches near (0, 0), worked out place by place."""
+    model, planes = RowModel.of(here.table), HalfPlanes(goal)
+    inches = [float(n) for n in range(-12, 13)]
+    moves = {}
+    for x, y in product(inches, inches):
+        ends = model.ends(
+            np.arange(len(here.table)), np.array([x]), np.array([y]), here.reaches, here.slides
+        )
+        arrived = planes.hold(ends.x, ends.y)
+        moves[x, y] = list(zip(steps[ends.row], arrived, ends.x, ends.y, strict=True))
+    worth = dict.fromkeys(moves, HOPELESS)
+    for _ in range(120):
+        before = worth
+        worth = {
+            place: min(
+                [HOPELESS]
+                + [
+                    float(cost) + (0.0 if there else blurred(before, float(x), float(y)))
+                    for cost, there, x, y in found
+                ]
+            )
+            for place, found in moves.items()
+        }
+    return worth
+
+
+def blurred(worth: dict[tuple[float, float], float], x: float, y: float) -> float:
+    """Return the mean worth about a place: of the four whole inches about it, each of which is
+    spread over its neighbours.
+    """
+    mean = 0.0
+    for column, line in product(
+        (math.floor(x), math.floor(x) + 1), (math.floor(y), math.floor(y) + 1)
+    ):
+        share = (1.0 - abs(x - column)) * (1.0 - abs(y - line))
+        for (i, p), (j, q) in product(zip((-1, 0, 1), (0.25, 0.5, 0.25), strict=True), repeat=2):
+            mean += share * p * q * worth.get((float(column + i), float(line + j)), HOPELESS)
+    return mean
 
 
 def test_candidates_begin_with_the_row_that_is_chosen() -> None:
