@@ -50,8 +50,8 @@ OTHERS = (
         None,
         same_table=False,
     ),
-    Peer("MuJoCo", "mujoco", ("push_mujoco.py",), 5.0, same_table=True),
-    Peer("PyBullet", "pybullet", ("push_pybullet.py",), 10.0, same_table=True),
+    Peer("MuJoCo", "mujoco", ("push_mujoco.py",), 8.0, same_table=True),
+    Peer("PyBullet", "pybullet", ("push_pybullet.py",), 8.0, same_table=True),
 )
 
 

@@ -40,7 +40,7 @@ def bench_hours(scale: Scale) -> dict[str, Any]:
                 done += sum(run.behaviors for run in store.learning.runs())
                 touches += touched(store)
     wall, cpu = sum(t.wall for t in times), sum(t.cpu for t in times)
-    held = bar(lived / wall, least=15.0)
+    held = bar(lived / wall, least=10.0)
     share = touches / done
     print(
         f"hours: {lived / wall:.1f} robot hours a wall second of learning with the store "

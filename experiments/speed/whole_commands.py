@@ -61,7 +61,7 @@ def bench_learn(scale: Scale) -> dict[str, Any]:
         ("new database", "one robot hour, new database"),
     ):
         against = ratios(times[name], times["imports"])
-        held = bar(against.median, most=1.8) if name != "new database" else {"bar": None}
+        held = bar(against.median, most=2.0) if name != "new database" else {"bar": None}
         end = verdict(held, least=False) if held["bar"] else "no bar"
         print(
             f'learn: learn --tool t-hook {words}: {against} of "{IMPORTS}" ({base:.0f} ms; {end})'
