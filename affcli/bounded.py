@@ -9,12 +9,14 @@ import re
 import tomllib
 from itertools import accumulate
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from affcli.errors import BadInputError
 
 LARGEST_FILE = 1_000_000
 """Bytes of a file of settings or of a calibration; affcli writes some 6,000."""
+PIECE = 65_536
+"""Bytes that are read at first of what does not say how many it has."""
 LARGEST_VALUE = 100_000
 """Bytes of one value or one row of a database; affcli writes some 3,000. Inside a function SQLite
 looks at no clock, and instr() takes 11 s on 1 MB, 0.1 s on 100 kB."""
@@ -50,11 +52,24 @@ def file_bytes(path: Path, shown: str, remedy: str, largest: int = LARGEST_FILE)
     try:
         size = path.stat().st_size  # 0 of what is no file
         with path.open("rb") as file:
-            data = file.read(largest + 1) if size <= largest else b""
+            data = _read(file, size, largest) if size <= largest else b""
     except OSError as error:
         raise BadInputError(f"{shown}: {error.strerror}; {remedy}") from error
     if max(size, len(data)) > largest:
         raise BadInputError(f"{shown}: more than {largest} bytes; {remedy}")
+    return data
+
+
+def _read(file: BinaryIO, size: int, largest: int) -> bytes:
+    """Return what a file holds, at most one byte more than `largest`.
+
+    A read takes as much memory as it asks for, however little there is: so first that is asked for
+    which the file says that it has, and more of what says nothing, like a pipe.
+    """
+    data, asked = b"", size + 1
+    while part := file.read(min(asked, largest + 1 - len(data))):
+        data += part
+        asked = max(len(data), PIECE)
     return data
 
 
