@@ -82,7 +82,8 @@ class AffordanceTable:
 
         Args:
             key: names it, with all else that it depends on.
-            make: makes it; what it gives is left as it is, and no counter enters it.
+            make: makes it; what it gives answers the same whenever it is asked, and no counter
+                enters it but with a question.
         """
         if key not in self._made:
             self._made[key] = make(self)

@@ -233,19 +233,22 @@ class _Latest:
     """Remembers what was made last: a trial asks for the same again and again."""
 
     def __init__(self) -> None:
-        self._key: object = None
-        self._made: object = None
+        self._latest: tuple[object, object] | None = None
 
     def get(self, key: object, make: Callable[[], Made]) -> Made:
         """Return what was made for an equal key just before, or make it."""
-        if self._made is None or self._key != key:
-            self._key, self._made = key, make()
-        made: Made = self._made  # type: ignore[assignment]
+        latest = self._latest
+        if latest is None or latest[0] != key:
+            # Key and value together: who asks meanwhile never finds the one without the other.
+            self._latest = latest = key, make()
+        made: Made = latest[1]  # type: ignore[assignment]
         return made
 
 
 class _Worths:
-    """The ways of a table and the worths of places; the latest of each are remembered."""
+    """The ways of a table and the worths of places. The latest of each are remembered, and each
+    answer is the one that nothing remembered would give.
+    """
 
     def __init__(self, cell: float) -> None:
         self._cell = cell
