@@ -37,6 +37,7 @@ def reproduction_json(result: Reproduction) -> dict[str, Any]:
         "robots": result.robots,
         "seed": result.session.spec.seed,
         "session": result.session.id,
+        "sensor": result.session.spec.sensor,
         "settings": settings_words(result.session.spec.settings),
         "parts": other_parts(result.session.spec),
         "cells": [
