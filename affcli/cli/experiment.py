@@ -25,6 +25,7 @@ from affcli.report.experiment import (
     experiment_tables,
     invalid_words,
 )
+from affcli.report.words import many
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,8 +117,8 @@ def experiment(
         # Meanwhile another process may have asked for more robots.
         wished = store.experiments.named(what.name).definition["experiment"]["robots"]
         result = lab.overview.experiment_of(store, info)
-    of_all = f"{result.robots}" if result.robots == wished else f"{result.robots} of {wished}"
-    say(f"experiment {one_line(what.name)}: {of_all} robots, saved in {one_line(database)}")
+    count = f"{result.robots} of " * (result.robots != wished) + many(wished, "robot")
+    say(f"experiment {one_line(what.name)}: {count}, saved in {one_line(database)}")
     show_either(
         as_json=as_json,
         results=lambda: [experiment_json(result)],

@@ -16,6 +16,7 @@ from affcli.errors import BadInputError, UsageError, one_line
 from affcli.lab.suggesting import DEFAULT_DATABASE
 from affcli.report import page
 from affcli.report.overview import overview_json, overview_tables
+from affcli.report.words import many
 
 Html = Annotated[
     Path | None, typer.Option("--html", help="Write a page with replays, *.html.", metavar="FILE")
@@ -112,7 +113,7 @@ def _as_page(
     command = one_line(shlex.join(words), 1000)
     save(html, page.rendering.render(content, command).encode("utf-8", "backslashreplace"))
     differing = sum(bool(replay.differences) for replay in content.replays)
-    say(f"{content.robot}, {len(content.replays)} trials to replay: {one_line(html)}")
+    say(f"{content.robot}, {many(len(content.replays), 'trial')} to replay: {one_line(html)}")
     for line in page.answers.left_out(content):
         say(line)
     if differing:

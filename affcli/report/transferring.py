@@ -75,9 +75,9 @@ def lent_tables(
         ]
         lent = len({one.step for one in own})
         name = f"{tool_words(lender.spec.tool)}, run {lender.id}"
-        heading = f"{name}: {lent} of {len(rows)} rows lent"
+        heading = f"{name}: {lent} of {many(len(rows), 'row')} lent"
         tables.append(LentTable(heading, seen, shown))
-    heading = f"{tool_words(run.spec.tool)}, run {run.id}: {len(borrowed)} rows borrowed"
+    heading = f"{tool_words(run.spec.tool)}, run {run.id}: {many(len(borrowed), 'row')} borrowed"
     tables.append(LentTable(heading, mask, [(one.row, Kind.of(one)) for one in borrowed]))
     gone = len({one.lender for one in borrowed}) - len(lenders)
     missing = f"{many(gone, 'lender')} not there any more" if gone else ""
