@@ -7,7 +7,7 @@ from pathlib import Path
 
 from affcli.bounded import LARGEST_VALUE
 from affcli.errors import DatabaseError, one_line
-from affcli.store.waiting import PRIMARY
+from affcli.store.waiting import DAMAGED, PRIMARY
 
 INTERRUPTED_WRITE = (
     "was left in the middle of a write and you may not set it right; let somebody open it who may "
@@ -34,7 +34,7 @@ REMEDIES = {
     "the command again",
     sqlite3.SQLITE_IOERR: "the disk refused to read or write; what was saved before is kept; look "
     "at free space, quotas and the disk's health, then run the command again",
-    sqlite3.SQLITE_CORRUPT: "damaged; restore a copy of the file, or name another with --db",
+    sqlite3.SQLITE_CORRUPT: DAMAGED,
     sqlite3.SQLITE_TOOBIG: f"holds a value of more than {LARGEST_VALUE} bytes, which affcli did "
     "not write; restore a copy of the file",
     sqlite3.SQLITE_NOTADB: "not a SQLite database; name another file with --db",

@@ -271,24 +271,29 @@ class Results:
         """Return what learning runs did in intervals of robot time, by run, each in order.
 
         One pass over the behaviors in the database, however many robots there are. Intervals in
-        which nothing ended are left out.
+        which nothing ended are left out, and so are runs of a log that does not say times.
 
         Args:
             seconds: length of an interval.
             session_id: the runs that its robots used; None for those that stand for themselves.
+
+        Raises:
+            UnreadableError: a behavior of a simulated run has no time.
         """
         require_kept(self.database, "behaviors", used_in(session_id))
         b, run = behavior.c, learning_run.c
+        runs = sa.select(run.id).where(used_in(session_id), run.robot_seconds.is_not(None))
         number = sa.cast(b.clock / seconds, sa.Integer)
         wanted = (
             sa.select(b.learning_run_id, number, sa.func.count(), sa.func.sum(b.change_detected))
-            .where(b.learning_run_id.in_(sa.select(run.id).where(used_in(session_id))))
+            .where(b.learning_run_id.in_(runs))
             .group_by(b.learning_run_id, number)
             .order_by(b.learning_run_id, number)
         )
         by_run: dict[int, list[LearningInterval]] = {}
-        for row in self._all(wanted):
-            by_run.setdefault(row[0], []).append(LearningInterval(*row))
+        for run_id, at, *counts in self._all(wanted):
+            with reading_what_was_written(f"learning run {run_id}"):
+                by_run.setdefault(run_id, []).append(LearningInterval(run_id, int(at), *counts))
         return by_run
 
     def trial_groups(

@@ -25,6 +25,9 @@ BUSY = frozenset({sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_PRO
 PRIMARY = 0xFF
 """The bits of a result code that say the kind; the others say more exactly what happened."""
 
+DAMAGED = "damaged; restore a copy of the file, or name another with --db"
+"""What is said of a file that SQLite cannot make sense of."""
+
 _say: Callable[[str], object] = str
 
 
@@ -53,6 +56,16 @@ class Waiting(sqlite3.Connection):
         """Execute a statement with a cursor that waits."""
         return self.cursor().execute(*statement)
 
+    def close(self) -> None:
+        """Roll back what is open, and close.
+
+        A statement that a signal interrupted keeps a closed file open, with its transaction, lock
+        and journal, until the cursor is collected.
+        """
+        with suppress(sqlite3.Error):
+            self.rollback()
+        super().close()
+
 
 class _WaitingCursor(sqlite3.Cursor):
     connection: Waiting
@@ -61,13 +74,16 @@ class _WaitingCursor(sqlite3.Cursor):
         """Execute a statement as soon as others let it.
 
         Raises:
-            DatabaseError: they do not for too long.
+            DatabaseError: they do not for too long, or the file is damaged.
         """
         path, longest, told = self.connection.path, self.connection.longest, False
         began = time.monotonic()
         while True:
             try:
                 return super().execute(*statement)
+            except UnicodeDecodeError as error:
+                # SQLite's own message, which quotes what the file calls its tables.
+                raise DatabaseError(f"{one_line(path)}: {DAMAGED}") from error
             except sqlite3.Error as error:
                 # Errors of Python's own driver have no code.
                 if getattr(error, "sqlite_errorcode", 0) & PRIMARY not in BUSY:

@@ -45,7 +45,9 @@ def run_column(database: Path) -> int:
 
 
 def learned_at_once(commands: Sequence[tuple[str, ...]], database: Path) -> None:
-    """Run several commands beside one another; all must succeed, with one line each."""
+    """Run several commands beside one another; all must succeed, with one line each, and before
+    that one a minute of how far they are.
+    """
     with ExitStack() as stack:
         processes = [
             stack.enter_context(started("learn", *args, "--db", database)) for args in commands
@@ -53,7 +55,9 @@ def learned_at_once(commands: Sequence[tuple[str, ...]], database: Path) -> None
         for process in processes:
             ended = ending(process)
             assert ended.code == 0, ended
-            assert len(ended.err.splitlines()) == 1, ended
+            *progress, done = ended.err.splitlines()
+            assert done.startswith("learned "), ended
+            assert all(line.endswith(" left") for line in progress), ended
 
 
 @pytest.mark.fault(6)

@@ -78,6 +78,20 @@ def damage_is_found(path: Path) -> bool:
         return True
 
 
+@pytest.mark.fault(13)
+def test_a_damaged_name_that_sqlite_quotes_is_damage(database: Path) -> None:
+    """Python's driver cannot decode what SQLite says then."""
+    whole = database.read_bytes()
+    spoilt = whole.replace(b"CREATE VIEW affordance_wide", b"CREATE VIEX affordance_wide")
+    database.write_bytes(spoilt.replace(b"affordance_wide", b"affordance\xd2wide"))
+    for write in (False, True):
+        with (
+            pytest.raises(DatabaseError, match=f"^{database}: damaged; restore a copy"),
+            open_store(database, create=False, write=write),
+        ):
+            pytest.fail("it was opened")
+
+
 def test_a_table_that_another_one_names_in_vain_is_damage(database: Path) -> None:
     """Emptied of its columns: SQLite finds that out when a row is to refer to it."""
     with closing(sqlite3.connect(database)) as driver, driver:

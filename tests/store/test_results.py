@@ -15,6 +15,7 @@ from affcli.core.specs import Counters, Protocol, TrialRecord
 from affcli.core.trial import Outcome, TrialEnd
 from affcli.core.verification import ReplicationRecord
 from affcli.store import Store
+from affcli.store.reading import UnreadableError
 from tests.factories import learning_spec
 from tests.store.records import (
     NOW,
@@ -86,6 +87,18 @@ def test_intervals_count_what_ended_in_them(store: Store) -> None:
     told = store.results.learning_intervals(20.0)
     assert list(told) == [run, run + 1]
     assert told[run] == [LearningInterval(run, 0, 3, 3), LearningInterval(run, 1, 4, 1)]
+
+
+def test_behaviors_without_a_time_are_of_a_log_or_damage(store: Store) -> None:
+    run, other = learned(store), learned(store, spec=learning_spec(seed=5))
+    with closing(sqlite3.connect(store.path)) as driver, driver:
+        driver.execute("UPDATE behavior SET clock = NULL WHERE learning_run_id = ?", [run.id])
+    with pytest.raises(UnreadableError, match=f"^learning run {run.id} holds a value"):
+        store.results.learning_intervals(20.0)
+    with closing(sqlite3.connect(store.path)) as driver, driver:
+        logged = "UPDATE learning_run SET world = 'log:map=1', robot_seconds = NULL WHERE id = ?"
+        driver.execute(logged, [run.id])
+    assert list(store.results.learning_intervals(20.0)) == [other.id]
 
 
 def test_why_the_first_of_the_trials_counts_for_nothing(store: Store) -> None:

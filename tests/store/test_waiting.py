@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from affcli.errors import DatabaseError
+from affcli.errors import BadInputError, DatabaseError
 from affcli.store import check, database_info, open_store, run_sql, tell_of_waiting, waiting
-from affcli.store.waiting import lock_holder
+from affcli.store.waiting import connected, lock_holder
 
 PATIENCE = 0.6
 """Seconds, of which SQLite itself waits for some before it is asked again."""
@@ -91,3 +91,26 @@ def test_who_holds_the_lock_is_named(
     monkeypatch.setattr(os, "getpid", lambda: own + 1)
     assert lock_holder(locked) == f"process {own}, probably another affcli"
     assert lock_holder(tmp_path / "other.db") == "another process, probably another affcli"
+
+
+@pytest.mark.fault(4)
+def test_what_a_signal_interrupts_holds_nothing_once_it_is_closed(database: Path) -> None:
+    """Though its cursor lives on, as in a traceback that a notebook keeps."""
+    driver = connected(database, "rw", PATIENCE)
+    driver.execute("BEGIN IMMEDIATE")
+    driver.execute("CREATE TABLE half (x)")
+    cursor = driver.cursor()
+    with pytest.raises(KeyboardInterrupt):
+        cursor.executemany("INSERT INTO half VALUES (?)", interrupted())
+    assert list(database.parent.glob(f"{database.name}-*"))
+    driver.close()
+    assert not list(database.parent.glob(f"{database.name}-*"))
+    with pytest.raises(BadInputError, match="no such table: half"):
+        run_sql(database, "SELECT * FROM half", timeout=PATIENCE)
+    store(database)
+
+
+def interrupted() -> Iterator[tuple[int]]:
+    """Yield some rows, and then what ctrl-C raises."""
+    yield from ((number,) for number in range(9))
+    raise KeyboardInterrupt
