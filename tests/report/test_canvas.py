@@ -1,5 +1,7 @@
 """What all figures share: strips of words, and letters that can be read in every width."""
 
+from textwrap import wrap
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -16,11 +18,18 @@ FORMULA = 0.7
 """How large matplotlib writes an index, over its letters."""
 
 
-@given(st.text("abc -(", max_size=60), st.floats(0.2, 4.0))
+@given(st.text("abi.T,V -(", max_size=60), st.floats(0.2, 4.0))
 def test_words_are_broken_into_lines_that_fit_and_none_is_lost(words: str, width: float) -> None:
+    """Of all ways the one of the longest lines."""
+
+    def fits(lines: str) -> bool:
+        return all(width_of(line, TITLE_SIZE) <= width for line in lines.split("\n"))
+
     lines = wrapped(words, TITLE_SIZE, width)
+    ways = ("\n".join(wrap(words, letters)) for letters in range(len(words), 1, -1))
+    assert lines == next(filter(fits, ways), words)
     assert "".join(lines.split()) == "".join(words.split())
-    assert all(width_of(line, TITLE_SIZE) <= width for line in lines.split("\n"))
+    assert fits(lines)
 
 
 def test_what_the_font_lacks_is_written_as_its_number() -> None:

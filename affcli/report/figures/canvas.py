@@ -191,8 +191,12 @@ def wrapped(words: str, size: float, width: float) -> str:
 
 
 def _broken(line: str, size: float, width: float) -> str:
-    for letters in range(len(line), 1, -1):
+    # Longer lines are too wide for certain: kerning takes less than half of a letter. Lines that
+    # fit break alike whether more letters than this are allowed or not.
+    narrowest = 0.5 * min((width_of(letter, size) for letter in set(line)), default=width)
+    most = len(line) if narrowest * len(line) <= width else int(width / narrowest)
+    for letters in range(most, 1, -1):
         parts = textwrap.wrap(line, letters)
-        if max((width_of(part, size) for part in parts), default=0.0) <= width:
+        if all(width_of(part, size) <= width for part in parts):
             return "\n".join(parts)
     return line
