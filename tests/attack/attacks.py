@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 
 from tests.fuzz.commands import FITTING, PLAUSIBLE, TOOLS, USUAL, Command, every_command
+from tests.states.commands import ALWAYS_WRITE
 
 Args = tuple[str, ...]
 
@@ -38,8 +39,6 @@ WRITERS: tuple[Args, ...] = (
     ("db", "upgrade"),
 )
 """What writes into a database, or a copy of it; `db upgrade` is given one of an older schema."""
-WRITING = {"learn", "solve", "break-tool", "reproduce", "db upgrade", "db backup"}
-WRITING |= {"experiment", "invent", "import", "runs note", "runs delete", "db merge"}
 NOT_THERE = {"compare", "figure compare", "figure plan"}
 """What needs two conditions of one seed, or a plan: the database under attack has none."""
 MOST_READ = {"figure", "report", "replay"}
@@ -91,7 +90,7 @@ class Attack:
     @property
     def writes(self) -> bool:
         """Whether it may write into its database."""
-        return self.command in WRITING or "--update" in self.args
+        return self.command in ALWAYS_WRITE or "--update" in self.args
 
 
 @cache

@@ -14,7 +14,6 @@ import numpy as np
 
 from tests.attack.attacks import (
     NOT_THERE,
-    WRITING,
     Args,
     Attack,
     drawn,
@@ -34,6 +33,7 @@ from tests.attack.checks import (
 from tests.attack.disturbing import disturbance
 from tests.cli.forked import Finished, Forked
 from tests.fuzz.running import check_ending
+from tests.states.commands import ALWAYS_WRITE
 
 OLD_DATABASES = Path(__file__).parents[1] / "store" / "databases"
 LIVING, OLDER = "living.db", "older.db"
@@ -214,6 +214,6 @@ def readers() -> tuple[list[Args], list[Args]]:
     quick: list[Args] = []
     slow = [*MORE]
     for command in named():
-        if has_database(command) and command.name not in WRITING | NOT_THERE:
+        if has_database(command) and command.name not in ALWAYS_WRITE | NOT_THERE:
             (quick if command.name in QUICK else slow).append(plainly(command))
     return quick, slow

@@ -11,18 +11,16 @@ from tests.cli.forked import Forked
 from tests.fuzz.commands import CommandLine, command_lines
 from tests.fuzz.conftest import Fuzz
 from tests.fuzz.running import check_ending, check_json, files_in, is_sound
-from tests.states.commands import WRITING
+from tests.states.commands import ALWAYS_WRITE
 
 DATABASES = ("filled.db", "empty.db")
-WRITES = {name.partition(",")[0] for name in WRITING if " --" not in name} - {"db backup"}
-"""Commands that may change the database they are given, whatever else they are given."""
 PLACES = ("--db", "--out", "--html", "--gif", "--video")
 """Options that name a file that may be written."""
 
 
 def writes(line: CommandLine) -> bool:
     """Tell whether a command may change the database it is given."""
-    return line.command.name in WRITES or "--update" in line.args
+    return line.command.name in ALWAYS_WRITE - {"db backup"} or "--update" in line.args
 
 
 def named_places(line: CommandLine, home: Path) -> list[str]:

@@ -106,6 +106,9 @@ WRITING = {
 }
 """What writes: a database, a copy of one, or another file; by the words that call it."""
 
+ALWAYS_WRITE = frozenset(name.partition(",")[0] for name in WRITING if " --" not in name)
+"""Commands that write a database, or a copy of one, whatever they are given."""
+
 PLACES = {"--out", "--html", "--gif"}
 """Options that name a file to be written."""
 ENDINGS = {"figure": "svg", "camera": "png", "table": "csv", "--html": "html", "--gif": "gif"}
