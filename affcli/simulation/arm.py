@@ -10,9 +10,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
+import numpy as np
+from numpy.typing import NDArray
+
 from affcli.core.geometry import Point, Pose
 from affcli.core.workspace import ArmGeometry
 from affcli.errors import BadInputError
+
+Floats = NDArray[np.float64]
 
 WRIST_PITCH_MAX = math.radians(110.0)
 """Published range of the arm's fourth axis, to both sides."""
@@ -69,6 +74,42 @@ class Reach:
         return replace(
             self, waist_min=max(self.waist_min, low), waist_max=min(self.waist_max, high)
         )
+
+
+@dataclass(frozen=True, slots=True)
+class ReachableWrists:
+    """Tells for many wrist positions whether the arm can hold the tool there. Two are equal when
+    they answer alike, so that what was worked out for one serves the other.
+
+    Args:
+        inner, outer: radii about the shoulder (in).
+        waist_max: how far the waist turns to either side (rad).
+    """
+
+    inner: float
+    outer: float
+    waist_max: float
+
+    def __call__(self, x: Floats, y: Floats, angle: Floats | float = 0.0) -> NDArray[np.bool_]:
+        """Tell for each wrist position (n,), (n,) (in, table frame) whether it lies within the ring
+        and the ranges of waist and roll, at an angle (rad): one for all, or one each (n,).
+        """
+        squared = x * x
+        squared += y * y
+        held = squared >= self.inner * self.inner
+        held &= squared <= self.outer * self.outer
+        # Within the waist's range of straight ahead: y >= r cos(waist), without an arc tangent.
+        if self.waist_max >= math.radians(90.0):
+            held &= y >= 0.0
+        else:
+            np.sqrt(squared, out=squared)
+            squared *= math.cos(self.waist_max)
+            held &= y >= squared
+        # Up to this angle the roll can undo all that the waist turns.
+        free = WRIST_ROLL_MAX - self.waist_max
+        if abs(angle) > free if isinstance(angle, float) else np.any(np.abs(angle) > free):
+            held &= np.abs(angle + np.arctan2(x, y)) <= WRIST_ROLL_MAX
+        return held
 
 
 def free_turn(wrist: Pose, way: float) -> float:

@@ -3,9 +3,6 @@
 import math
 from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from affcli.behaviors.positioning import wrist_target
 from affcli.core.behavior import (
     GRASP,
@@ -22,7 +19,7 @@ from affcli.core.observation import Observation
 from affcli.core.tool import hold_of
 from affcli.core.world import Film
 from affcli.errors import BadInputError, one_line
-from affcli.simulation.arm import WRIST_ROLL_MAX, free_turn, reach_at
+from affcli.simulation.arm import ReachableWrists, free_turn, reach_at
 from affcli.simulation.strides import Moment
 from affcli.simulation.table import Table
 from affcli.simulation.wrist_motion import (
@@ -57,6 +54,13 @@ class SimulatedRobot:
         self._motions = {one.call: one.motion for one in repertoire}
         self._low = reach_at(arm, arm.flange_height)
         self._high = reach_at(arm, arm.flange_height + arm.lift_height)
+        low, high = self._low, self._high
+        inner, outer = max(low.inner, high.inner), min(low.outer, high.outer)
+        self.reaches = ReachableWrists(inner, outer, low.waist_max)
+        """Where the arm can set the tool down: it must hold it there both lifted and on the table.
+        """
+        self.slides = ReachableWrists(low.inner, low.outer, low.waist_max)
+        """Where it can hold the tool on the table: nearer than where it could lift it, too."""
         self.clock = 0.0
         self.holding: BehaviorCall | None = None
         """The binding behavior by which the tool is held."""
@@ -69,57 +73,6 @@ class SimulatedRobot:
     def wrist(self) -> Pose:
         """The wrist now (in, rad, table frame), by the joint encoders."""
         return self._table.wrist
-
-    def reaches(
-        self,
-        x: NDArray[np.float64],
-        y: NDArray[np.float64],
-        angle: NDArray[np.float64] | float = 0.0,
-    ) -> NDArray[np.bool_]:
-        """Tell for each wrist position (n,), (n,), at an angle, whether the arm can set the tool
-        down there.
-
-        To set it down the arm must hold it there both lifted and on the table.
-        """
-        inner = max(self._low.inner, self._high.inner)
-        return self._within(inner, min(self._low.outer, self._high.outer), x, y, angle)
-
-    def slides(
-        self,
-        x: NDArray[np.float64],
-        y: NDArray[np.float64],
-        angle: NDArray[np.float64] | float = 0.0,
-    ) -> NDArray[np.bool_]:
-        """Tell for each wrist position (n,), (n,), at an angle, whether the arm can hold the tool
-        on the table there: nearer than where it could lift it, too.
-        """
-        return self._within(self._low.inner, self._low.outer, x, y, angle)
-
-    def _within(
-        self,
-        inner: float,
-        outer: float,
-        x: NDArray[np.float64],
-        y: NDArray[np.float64],
-        angle: NDArray[np.float64] | float,
-    ) -> NDArray[np.bool_]:
-        """Tell whether places lie within a ring and the ranges of waist and roll."""
-        squared = x * x
-        squared += y * y
-        held = squared >= inner * inner
-        held &= squared <= outer * outer
-        # Within the waist's range of straight ahead: y >= r cos(waist), without an arc tangent.
-        if self._low.waist_max >= math.radians(90.0):
-            held &= y >= 0.0
-        else:
-            np.sqrt(squared, out=squared)
-            squared *= math.cos(self._low.waist_max)
-            held &= y >= squared
-        # Up to this angle the roll can undo all that the waist turns.
-        free = WRIST_ROLL_MAX - self._low.waist_max
-        if abs(angle) > free if isinstance(angle, float) else np.any(np.abs(angle) > free):
-            held &= np.abs(angle + np.arctan2(x, y)) <= WRIST_ROLL_MAX
-        return held
 
     def execute(self, call: BehaviorCall, seen: Observation | None) -> Execution:
         """Execute one behavior to its end (see the protocol in `core.ports`)."""

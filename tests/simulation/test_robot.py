@@ -300,6 +300,16 @@ def test_a_slide_ends_where_the_robot_says_that_it_cannot_slide() -> None:
     assert not robot.reaches(np.zeros(1), np.array([end + 0.01])).any()
 
 
+def test_robots_alike_reach_alike_so_that_what_is_worked_out_for_one_serves_the_next() -> None:
+    """A planner remembers by it: each trial has a robot of its own."""
+    one, other = setting_with("stick").robot, setting_with("stick").robot
+    shorter = settings_with({"arm": {"upper_arm": ARM.upper_arm - 1.0}}, "a test")
+    unlike = setting_with("stick", settings=shorter).robot
+    assert (one.reaches, one.slides) == (other.reaches, other.slides)
+    assert one.reaches != unlike.reaches
+    assert one.reaches != one.slides
+
+
 @settings(deadline=None)
 @given(st.floats(-25.0, 25.0), st.floats(0.5, 25.0))
 def test_position_wrist_succeeds_where_the_robot_says_it_reaches(x: float, y: float) -> None:
