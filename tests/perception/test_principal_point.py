@@ -67,10 +67,11 @@ def test_the_principal_point_is_found_where_the_markers_tell() -> None:
     assert middle.rms_px > 1.5 * found.rms_px
 
 
-def test_over_many_cameras_the_errors_are_what_their_deviations_promise() -> None:
+@pytest.mark.torture
+def test_over_many_cameras_the_errors_are_what_their_deviations_promise(torture: bool) -> None:
     rng = np.random.default_rng(4)
     shares = []
-    for _ in range(60):
+    for _ in range(60 if torture else 15):
         camera = random_camera(rng)
         off = rng.normal(0.0, OFF_CENTER * SENSOR.width_px, 2)
         pixels = flat(camera, PATTERN.places) + off

@@ -8,6 +8,8 @@ import os
 import signal
 import sqlite3
 import sys
+from collections.abc import Iterator
+from contextlib import closing
 from importlib import import_module
 from pathlib import Path
 
@@ -153,31 +155,33 @@ def writing_anew(path: Path) -> str:
     return "written"
 
 
-def killed_while_migrating(path: Path) -> None:
-    """Make the schema in one child after another, each killed at a later statement."""
-    warm_up(path)
-    for statement in range(1, 300):
-        status = killed_at(statement, path)
-        driver = sqlite3.connect(path)
-        tables = driver.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
-        sound = driver.execute("PRAGMA integrity_check").fetchone()[0]
-        driver.close()
-        sys.stdout.write(f"{statement} {status} {tables} {sound!s}\n")
-        if status == 0:
-            return
+def killed_while_migrating(path: Path, every: str) -> None:
+    """Make the schema in one child after another, each killed some statements later."""
+    for begun in deaths(path, every):
+        with closing(sqlite3.connect(path)) as driver:
+            tables = driver.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
+            sound = driver.execute("PRAGMA integrity_check").fetchone()[0]
+        sys.stdout.write(f"{begun} {tables} {sound!s}\n")
 
 
-def killed_while_upgrading(path: Path) -> None:
-    """Upgrade the database in one child after another, each killed at a later statement."""
-    warm_up(path)
-    for statement in range(1, 300):
-        status = killed_at(statement, path)
-        driver = sqlite3.connect(path)
-        whole = "\n".join(driver.iterdump())
-        sound = driver.execute("PRAGMA integrity_check").fetchone()[0]
-        driver.close()
+def killed_while_upgrading(path: Path, every: str) -> None:
+    """Upgrade the database in one child after another, each killed some statements later."""
+    for begun in deaths(path, every):
+        with closing(sqlite3.connect(path)) as driver:
+            whole = "\n".join(driver.iterdump())
+            sound = driver.execute("PRAGMA integrity_check").fetchone()[0]
         digest = hashlib.sha256(whole.encode()).hexdigest()
-        sys.stdout.write(f"{statement} {status} {digest} {sound!s}\n")
+        sys.stdout.write(f"{begun} {digest} {sound!s}\n")
+
+
+def deaths(path: Path, every: str) -> Iterator[str]:
+    """Migrate a database in one child after another until one comes to its end; say of each at
+    which statement it was to be killed, and how it ended.
+    """
+    warm_up(path)
+    for statement in range(1, 300, int(every)):
+        status = killed_at(statement, path)
+        yield f"{statement} {status}"
         if status == 0:
             return
 
@@ -223,4 +227,4 @@ def upgrade_when_told(path: Path) -> None:
 
 
 if __name__ == "__main__":
-    globals()[sys.argv[1]](Path(sys.argv[2]))
+    globals()[sys.argv[1]](Path(sys.argv[2]), *sys.argv[3:])

@@ -41,17 +41,20 @@ def digest(path: Path) -> str:
 
 
 @pytest.mark.fault(9)
-def test_a_kill_at_any_statement_of_an_upgrade_leaves_the_old_or_the_new(tmp_path: Path) -> None:
+@pytest.mark.torture
+def test_a_kill_at_any_statement_of_an_upgrade_leaves_the_old_or_the_new(
+    tmp_path: Path, torture: bool
+) -> None:
     """And each time a copy of the old. From the first revision, so through all migrations."""
     revision = "0001"
     path = old_database(revision, tmp_path)
     upgraded = Path(shutil.copy(path, tmp_path / "upgraded.db"))
     upgrade(upgraded)
     old, new = digest(path), digest(upgraded)
-    code, out, err = finished("killed_while_upgrading", path)
+    code, out, err = finished("killed_while_upgrading", path, "1" if torture else "7")
     assert (code, err) == (0, "")
     *deaths, end = [line.split() for line in out.splitlines()]
-    assert len(deaths) > 5  # every statement is a place to die
+    assert len(deaths) > 5
     for _, status, found, sound in deaths:
         assert (int(status), found, sound) == (signal.SIGKILL, old, "ok")
     assert end[1:] == ["0", new, "ok"]
