@@ -1,7 +1,7 @@
 """Conditions compared robot by robot, and how many robots it would take."""
 
 from collections.abc import Sequence
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from affcli.analysis.paired import FIELDS, LEVEL, Comparison, all_tried, in_common, summed
 from affcli.analysis.power import Plan, Untold, plan
@@ -40,8 +40,9 @@ class Condition(NamedTuple):
 def sessions_named(store: Store, numbers: Sequence[int]) -> list[Condition]:
     """Return sessions as conditions.
 
-    Each has the name that its experiment gives it; where it has none, or another one has the same,
-    its number is its name, or stands beside it.
+    Each has the name that its experiment gives it. Where another one has the same, how long it
+    learned stands beside it, and its number where that is the same, too; where it has none, its
+    number is its name.
 
     Raises:
         UsageError: one is not there, not finished or of another kind; or one comes twice.
@@ -49,15 +50,21 @@ def sessions_named(store: Store, numbers: Sequence[int]) -> list[Condition]:
     for number in repeated(numbers):
         raise UsageError(f"--session {number}: named twice; name another one")
     sessions = [finished_session(store, number, LIVES) for number in numbers]
-    given = [one.condition for one in sessions if one is not None]
-    found = []
-    for session in filter(None, sessions):
-        by_number, own = f"session {session.id}", session.condition
-        name = by_number
-        if own is not None:
-            name = own if given.count(own) == 1 else f"{own} ({by_number})"
-        found.append(condition_of(store, name, session))
-    return found
+    found = list(filter(None, sessions))
+    given = [one.condition for one in found]
+    names = [_name(store, one, given.count(one.condition) > 1) for one in found]
+    return [
+        condition_of(store, name if names.count(name) == 1 else f"{name} (session {one.id})", one)
+        for name, one in zip(names, found, strict=True)
+    ]
+
+
+def _name(store: Store, session: SessionInfo, is_another_s: bool) -> str:
+    """Return the name of a session: with how long its robots learned if another has the same."""
+    if session.condition is None:
+        return f"session {session.id}"
+    said = _said(store, session) if is_another_s else None
+    return session.condition + (f", minutes={60.0 * said['hours']:g}" if said else "")
 
 
 def condition_of(store: Store, name: str, session: SessionInfo) -> Condition:
@@ -69,15 +76,24 @@ def condition_of(store: Store, name: str, session: SessionInfo) -> Condition:
 
 def _beside(store: Store, session: SessionInfo) -> str:
     """Return what an experiment says of a condition that is not in its session."""
+    said = _said(store, session)
+    if said is None:
+        return ""
+    minutes = 60.0 * said["hours"]
+    words = [f"{minutes:g} min a tool"] if minutes != 60.0 else []
+    words += [text for text in said["repertoire"] if are_invented(text)]
+    words += [f"transfer {said['transfer']}"] if "transfer" in said else []
+    return ", ".join(words)
+
+
+def _said(store: Store, session: SessionInfo) -> dict[str, Any] | None:
+    """Return the condition of which a session is, as its experiment has it; None without one."""
     for one in store.experiments.all():
         for said in one.definition["condition"] if one.id == session.experiment_id else ():
             if said["name"] == session.condition:
-                minutes = 60.0 * said["hours"]
-                words = [f"{minutes:g} min a tool"] if minutes != 60.0 else []
-                words += [text for text in said["repertoire"] if are_invented(text)]
-                words += [f"transfer {said['transfer']}"] if "transfer" in said else []
-                return ", ".join(words)
-    return ""
+                found: dict[str, Any] = said
+                return found
+    return None
 
 
 def repeated(values: Sequence[T]) -> list[T]:

@@ -1,5 +1,6 @@
 """Conditions read from a store: what their robots solved, compared, planned with and followed."""
 
+import json
 import math
 from statistics import fmean
 
@@ -90,7 +91,9 @@ def test_robots_are_compared_with_the_first_condition_or_with_one_that_is_named(
         compared(store, conditions, "session 9", ("tool",))
 
 
-def test_sessions_have_the_names_that_their_experiment_gives_them(store: Store) -> None:
+def test_sessions_have_the_names_that_their_experiment_gives_them_told_apart_by_their_minutes(
+    store: Store,
+) -> None:
     ids = stored_conditions(store)
     with store.database.writing() as connection:
         one, other = (
@@ -108,6 +111,16 @@ def test_sessions_have_the_names_that_their_experiment_gives_them(store: Store) 
             connection.execute(sa.update(session).filter_by(id=own).values(**part))
     names = [one.name for one in sessions_named(store, ids)]
     assert names == ["paper", "rough (session 2)", "rough (session 3)"]
+    assert [one.name for one in sessions_named(store, ids[:2])] == ["paper", "rough"]
+    for number, hours in ((one, 1.0), (other, 0.25)):
+        said = {"name": "rough", "hours": hours, "repertoire": []}
+        with store.database.writing() as connection:
+            definition = json.dumps({"condition": [said]})
+            connection.execute(
+                sa.update(experiment).filter_by(id=number).values(definition=definition)
+            )
+    names = [one.name for one in sessions_named(store, ids)]
+    assert names == ["paper", "rough, minutes=60", "rough, minutes=15"]
     assert [one.name for one in sessions_named(store, ids[:2])] == ["paper", "rough"]
     store.sessions.save_failure(ids[0], FailedRobot(8, "ValueError", "no", 3), NOW)
     assert [one.robots for one in sessions_named(store, ids)] == [7, 8, 10]
