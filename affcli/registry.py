@@ -374,6 +374,14 @@ def recorded(kind: Kind, chosen: Component) -> Part:
     return found
 
 
+def is_told(planner: Component) -> bool:
+    """Tell whether a planner is no robot's own: it is told what no robot sees. None of another
+    package is.
+    """
+    own = parts("planners").get(planner.name)
+    return own is not None and own.told
+
+
 def _named(kind: Kind, text: str) -> tuple[Part, dict[str, Value]]:
     """Return the part that a user's text names, and the parameters given with it, not yet checked.
 

@@ -161,7 +161,7 @@ LIMITS = {
     "planners: nested-query: share": (0.001, 1.0),
     "planners: lookahead: smoothing": (0.0, 5.0),
     "planners: robust: radius": (0.05, 5.0),
-    "planners: value-iteration: cell": (0.1, 10.0),
+    "planners: value-iteration: cell": (0.5, 10.0),
     **{
         f"planners: {name}: {param}": limits
         for param, limits in {

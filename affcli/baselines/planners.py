@@ -18,7 +18,9 @@ DENSE, FINEST, COARSEST = 0.5, 0.25, 2.0
 unless it is said otherwise, at least and at most."""
 
 
-def on_pushes(depth: int, beam: int, angle_degrees: float, counters: int, **_: Value) -> Lookahead:
+def on_pushes(
+    depth: int, beam: int, angle_degrees: float, counters: int = 1, **_: Value
+) -> Lookahead:
     """Return the search of a baseline; what else it is told, the table says that it is given.
 
     Args:
@@ -31,16 +33,18 @@ def on_pushes(depth: int, beam: int, angle_degrees: float, counters: int, **_: V
 
 
 SEARCH = {name: LOOKAHEAD[0].params[name] for name in ("depth", "beam", "angle_degrees")}
-PUSHES = {
-    "counters": Setting(
-        *(1, ""),
-        "1: pushes that failed are excluded, as rows are; 0: believed whatever comes of them.",
-        *(0, 1),
-    ),
+SPACING = {
     "spacing": Setting(
         *(DENSE, "in"),
         "Between the places of the attractor that pushes are computed for.",
         *(FINEST, COARSEST),
+    ),
+}
+BELIEFS = {
+    "counters": Setting(
+        *(1, ""),
+        "1: pushes that failed are excluded, as rows are; 0: believed whatever comes of them.",
+        *(0, 1),
     ),
     "friction": Setting(
         *(0.0, ""),
@@ -49,7 +53,7 @@ PUSHES = {
     ),
     "even": Setting(
         *(0, ""),
-        "1: it believes that the puck's centre of mass is its middle; 0: what is true of it.",
+        "1: it believes that the puck's centre of mass is its middle, where it is not.",
         *(0, 1),
     ),
 }
@@ -60,11 +64,17 @@ PARTS = tuple(
         summary=summary,
         source="Stoytchev 2008, §8 (asked for there)",
         build=on_pushes,
-        params={**SEARCH, **PUSHES},
+        params={**SEARCH, **SPACING, **beliefs},
         told=True,
     )
-    for name, summary in (
-        (PUSH_PLANNER, "no robot's own: plans on computed pushes of the tool that it believes in"),
-        (ORACLE, "no robot's own: plans on computed pushes of the tool that is truly held"),
+    for name, beliefs, summary in (
+        (
+            *(PUSH_PLANNER, BELIEFS),
+            "no robot's own: plans on computed pushes of the tool that it believes in",
+        ),
+        (
+            *(ORACLE, dict[str, Setting]()),
+            "no robot's own: plans on computed pushes of the tool that is truly held",
+        ),
     )
 )

@@ -80,6 +80,7 @@ def reproduce(
         explorer=explorer,
         world=world,
     )
+    lab.believing.require_believable(planner, chosen)
     what = lab.reproduction.Reproduced(chosen, planner, seed)
     with opened(database, create=own or not resume, write=True) as store:
         if resume and not own:

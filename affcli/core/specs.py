@@ -119,6 +119,11 @@ class Parts:
         }
 
 
+TOLD = "told"
+"""In the place of an explorer: nothing was explored, the table was computed for a planner that is
+no robot's own."""
+
+
 @dataclass(frozen=True)
 class LearningSpec(Parts):
     """What a learning run is a pure function of.
@@ -143,6 +148,11 @@ class LearningSpec(Parts):
     def tool(self) -> str:
         """The name of the tool."""
         return self.held.name
+
+    @property
+    def told(self) -> bool:
+        """Its table is no robot's: it was computed, in no robot time."""
+        return self.explorer.name == TOLD
 
     def canonical(self) -> dict[str, Any]:
         """Return the spec as JSON types; see `Parts`."""

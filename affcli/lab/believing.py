@@ -5,31 +5,49 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from affcli import registry
-from affcli.baselines.planners import ORACLE
+from affcli.baselines.planners import ORACLE, PUSH_PLANNER
 from affcli.core.identity import Component
-from affcli.core.specs import LearningSpec, LearningStep
+from affcli.core.motion import Slide
+from affcli.core.specs import TOLD, LearningSpec, LearningStep, Parts
 from affcli.core.tool import Tool
-from affcli.errors import UsageError
+from affcli.errors import BadInputError, UsageError
 from affcli.lab.run_parts import settings_of
 
 if TYPE_CHECKING:
     from affcli.baselines.beliefs.pushes import Belief
 
-TOLD = "told"
-"""In the place of an explorer: nothing was explored, the table was computed."""
-
-
-def is_told(planner: Component) -> bool:
-    """Tell whether a planner is no robot's own: it is told what no robot sees."""
-    return registry.recorded("planners", planner).told
-
 
 def require_own(planner: Component) -> None:
     """Refuse a planner that is no robot's own where a robot uses what it learned."""
-    if is_told(planner):
+    if registry.is_told(planner):
         raise UsageError(
             f"{planner.name} is no robot's own: it plans on pushes that it is told, not on a table "
             "that was learned; name it in an experiment (affcli experiment)"
+        )
+
+
+def require_believable(planner: Component, parts: Parts) -> None:
+    """Refuse a baseline where pushes cannot be computed before any is done: each is of a straight
+    slide, against a puck that answers alike however it is turned.
+
+    Raises:
+        BadInputError: a behavior is anything else, or the puck's centre of mass is off its middle
+            and the baseline is not to believe otherwise.
+    """
+    if not registry.is_told(planner):
+        return
+    for behavior in parts.repertoire:
+        if [type(segment) for segment in behavior.motion] != [Slide]:
+            raise BadInputError(
+                f"repertoire: {planner.name} is told straight slides alone; leave out "
+                f"{behavior.call}"
+            )
+    values = registry.recorded("planners", planner).values(planner)
+    if settings_of(parts).workspace.puck.mass_offset and not values.get("even"):
+        raise BadInputError(
+            f"planner: {planner.name} is told the pushes of a puck that is even, and how this one "
+            f"lies changes with every push; name {PUSH_PLANNER}:even=1, or leave out "
+            "puck.mass_offset"
         )
 
 
@@ -46,9 +64,9 @@ def told_spec(learned: LearningSpec, planner: Component, held: Tool | None = Non
         # Under the name and the colour by which the robot would know it.
         believed = replace(held.painted(learned.held.color), name=learned.held.name)
     values = registry.recorded("planners", planner).values(planner)
-    words = {name: values[name] for name in ("spacing", "friction")}
+    words = {"spacing": values["spacing"], "friction": values.get("friction", 0.0)}
     # What was told before one could be told of an even puck has this name.
-    explorer = Component.of(TOLD, words | ({"even": 1} if values["even"] else {}))
+    explorer = Component.of(TOLD, words | ({"even": 1} if values.get("even") else {}))
     told = replace(learned, held=believed, explorer=explorer, hours=None, behaviors=1)
     return replace(told, behaviors=len(_pushes(told)))
 

@@ -14,7 +14,7 @@ from affcli.core.row_filter import Comparison, RowFilter
 from affcli.core.specs import LIVES
 from affcli.errors import BadInputError, UsageError, one_line
 from affcli.lab.inventing import EXPLORER
-from affcli.lab.run_parts import require_robot
+from affcli.lab.run_parts import require_learned, require_robot
 from affcli.lab.suggesting import with_database
 from affcli.lab.table import every_run
 from affcli.store import Store
@@ -33,10 +33,11 @@ def learned_runs(
         records: open.
         tool: the latest finished run of this tool; None for that of every tool that has one.
         run: this run and no other.
-        usable: a robot is to use them, so none from a log is taken.
+        usable: a robot is to use them, so none from a log is taken, nor one that was computed.
 
     Raises:
-        UsageError: there is none; the message names the command to run.
+        UsageError: there is none; the message names the command to run. Or that which was named is
+            no robot's, and is to be used.
         BadInputError: the run that was named comes from a log, and is to be used.
     """
     if run is not None:
@@ -47,6 +48,7 @@ def learned_runs(
             raise UsageError(f"run {run} is of the {chosen.spec.tool}: leave out --tool")
         if usable:
             require_robot(chosen.spec)
+            require_learned(chosen)
         return [chosen]
     names = [one for one in _learned_tools(records, usable=usable) if tool in (None, one)]
     latest = (records.learning.latest(name, usable=usable) for name in names)

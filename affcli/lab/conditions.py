@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any, NamedTuple, TypeVar
 
+from affcli import registry
 from affcli.analysis.paired import FIELDS, LEVEL, Comparison, all_tried, in_common, summed
 from affcli.analysis.power import Plan, Untold, plan
 from affcli.core.names import one_of
@@ -80,7 +81,8 @@ def _beside(store: Store, session: SessionInfo) -> str:
     if said is None:
         return ""
     minutes = 60.0 * said["hours"]
-    words = [f"{minutes:g} min a tool"] if minutes != 60.0 else []
+    learned = not registry.is_told(session.spec.planner)
+    words = [f"{minutes:g} min a tool"] if learned and minutes != 60.0 else []
     words += [text for text in said["repertoire"] if are_invented(text)]
     words += [f"transfer {said['transfer']}"] if "transfer" in said else []
     return ", ".join(words)

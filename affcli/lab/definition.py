@@ -30,7 +30,7 @@ from affcli.core.names import one_of
 from affcli.core.part import Kind
 from affcli.core.specs import BROKEN_SHAPE, BROKEN_TOOL
 from affcli.errors import BadInputError, UsageError, one_line
-from affcli.lab.believing import is_told
+from affcli.lab.believing import require_believable
 from affcli.lab.experiment import ADAPTATION, ADAPTATION_TASKS, Condition, Experiment
 from affcli.lab.inventing import EXPLORER, Inventing, are_invented
 from affcli.lab.own_parts import TABLES as OWN_TABLES
@@ -361,6 +361,7 @@ def _condition(name: str, said: Said, own_parts: OwnParts) -> tuple[Condition, d
         *(name, parts, planner, own["hours"], tuple(tools), tuple(tasks), inventing, transferring)
     )
     _require_lenders(condition)
+    require_believable(planner, parts)
     world = condition.world
     for task_set in condition.tasks:
         tasks_of(world, ADAPTATION_TASKS if task_set == ADAPTATION else task_set, 0)
@@ -385,7 +386,7 @@ def _require_lenders(condition: Condition) -> None:
                 'tools they do: transfer = "t-hook,l-stick"'
             )
         return
-    if is_told(condition.planner):
+    if registry.is_told(condition.planner):
         raise BadInputError(f"transfer: {condition.planner.name} is told its table; leave it out")
     for tool in condition.tools:
         if transferring.tools == (condition.parts.tool(tool).name,):

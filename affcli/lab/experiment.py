@@ -34,7 +34,7 @@ from affcli.core.tool import Tool
 from affcli.core.transfer import Borrowed, borrowed_starts
 from affcli.core.world import World
 from affcli.exploration.borrowing import Lender
-from affcli.lab.believing import TOLD, ToldRun, is_told, told_spec
+from affcli.lab.believing import ToldRun, told_spec
 from affcli.lab.inventing import Inventing
 from affcli.lab.learning_run import LearningRun
 from affcli.lab.run_parts import RunParts, TaskSet, settings_of, tasks_of, world_of
@@ -105,11 +105,12 @@ class Condition:
                 lenders = self.transferring.lenders(parts, spec.tool, seed, robot)
                 yield replace(spec, transfer=self.transferring.of(lenders)), lenders
                 continue
-            if not is_told(self.planner):
+            if not registry.is_told(self.planner):
                 yield spec, []
                 continue
             whole = told_spec(spec, self.planner)
-            yield whole, []
+            if any(self.uses(whole, task_set) for task_set in self.tasks):
+                yield whole, []
             if tool == BROKEN_TOOL and ADAPTATION in self.tasks:
                 broken = told_spec(spec, self.planner, self.parts.tool(BROKEN_SHAPE))
                 if broken != whole:
@@ -171,7 +172,7 @@ class _Learned:
     """A learning run with what trials need of it."""
 
     def __init__(self, spec: LearningSpec, lenders: Sequence["_Learned"] = ()) -> None:
-        run = ToldRun(spec) if spec.explorer.name == TOLD else LearningRun(spec)
+        run = ToldRun(spec) if spec.told else LearningRun(spec)
         self.spec = spec
         self.borrowed: tuple[Borrowed, ...] = ()
         if spec.transfer is not None:

@@ -10,6 +10,7 @@ from affcli.core.records import LearningRunInfo, SessionInfo
 from affcli.core.results import LearningInterval
 from affcli.core.specs import LIVES
 from affcli.errors import UsageError, one_line
+from affcli.lab.run_parts import require_learned
 from affcli.report.words import run_words
 from affcli.store import Store
 
@@ -22,7 +23,7 @@ def curves_of(store: Store, runs: Sequence[LearningRunInfo]) -> list[Curve]:
         runs: one at least.
 
     Raises:
-        UsageError: a run has not begun, or only borrowed.
+        UsageError: a run has not begun, only borrowed, or was computed.
     """
     seconds = _seconds(runs)
     did: dict[int, list[LearningInterval]] = {}
@@ -87,6 +88,7 @@ def _seconds(runs: Sequence[LearningRunInfo]) -> float:
             raise UsageError(f"run {run.id} comes from a log without times: it has no curve")
         if run.only_borrowed:
             raise UsageError(f"run {run.id} only borrowed: it has no curve")
+        require_learned(run)
         if run.robot_seconds == 0.0:
             raise UsageError(f"run {run.id} has not begun; go on with it first")
     return max(run.robot_seconds for run in runs) / INTERVALS

@@ -92,7 +92,7 @@ def content_of(
     experiments = experiments_of(store)
     bands = (
         curves_of_robots(store, every[0].session_id)[1]
-        if every and every[0].session_id is not None
+        if timed == every and every and every[0].session_id is not None
         else []
     )
     return Content(

@@ -20,10 +20,15 @@ from affcli.core.specs import Counters
 from affcli.core.trial import Outcome, TrialEnd, TrialStep, named_before
 from affcli.core.world import Setting, World
 from affcli.errors import UsageError
-from affcli.lab.believing import TOLD
 from affcli.lab.filming import FRAME_RATE, Reel
 from affcli.lab.learning_run import LearningRun
-from affcli.lab.run_parts import require_shape, require_world_version, settings_of, world_of
+from affcli.lab.run_parts import (
+    require_learned,
+    require_shape,
+    require_world_version,
+    settings_of,
+    world_of,
+)
 from affcli.lab.transferring import borrowed_again
 from affcli.lab.trials import WithEnd, run_trial
 from affcli.store import Store
@@ -179,8 +184,7 @@ def replay_run(
     Raises:
         UsageError, BadInputError, DatabaseError: as `replay_trial`.
     """
-    if run.spec.explorer.name == TOLD:
-        raise UsageError(f"run {run.id} is no robot's: its table was computed, nothing was done")
+    require_learned(run)
     learning = LearningRun(run.spec)
     _require_replays(learning.world)
     setting, reel = learning.setting, Reel()

@@ -11,6 +11,7 @@ from affcli.config import Settings, require_known, settings_from, with_sensor
 from affcli.core.behavior import ExploratoryBehavior
 from affcli.core.identity import Component, canonical_json
 from affcli.core.observation import SensorKind
+from affcli.core.records import LearningRunInfo
 from affcli.core.specs import LearningSpec, Parts
 from affcli.core.task import Task
 from affcli.core.tool import Tool, hold_of
@@ -167,6 +168,19 @@ def require_robot(learned: LearningSpec) -> None:
             f"the {one_line(learned.tool, 40)} of this run comes from a log: there is no robot "
             "that could use it, nor a world to do it again in; name a run that affcli learned"
         )
+
+
+def require_learned(run: LearningRunInfo, option: str = "") -> None:
+    """Make sure that a table was learned, not computed for a planner that knows more than a robot;
+    UsageError otherwise.
+
+    Args:
+        run: whose table it is.
+        option: which option named it; empty for none.
+    """
+    if run.spec.told:
+        place = f"{option}: run {run.id}" if option else f"run {run.id}"
+        raise UsageError(f"{place} is no robot's: its table was computed; name one that learned")
 
 
 def require_shape(tool: Tool, where: str = "") -> None:

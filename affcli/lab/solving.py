@@ -161,8 +161,10 @@ def tasks_named(task: str, goal: str | None, count: int | None = None) -> str:
     chosen = registry.component("tasks", task)
     if goal is None and chosen.name == registry.DEFAULTS["task"]:
         raise UsageError("Missing option '--goal'; or give --task anywhere")
-    given = dict(chosen.params) | ({} if count is None else {"n": count})
-    return str(registry.part("tasks", chosen.name).component(given))
+    part, given = registry.part("tasks", chosen.name), dict(chosen.params)
+    if count is not None and "n" not in part.params:
+        raise UsageError(f"--n is of random tasks, not of {chosen.name}; give --task anywhere")
+    return str(part.component(given | ({} if count is None else {"n": count})))
 
 
 def session_spec(kind: str, run: LearningRunInfo, trial: TrialSpec) -> SessionSpec:

@@ -19,8 +19,7 @@ from affcli.core.transfer import MOST_LENDERS, Borrowed, Borrowing, Transfer
 from affcli.core.world import shows_tools
 from affcli.errors import BadInputError, UsageError, one_line
 from affcli.exploration.borrowing import Lender, borrow
-from affcli.lab.believing import TOLD
-from affcli.lab.run_parts import RunParts, world_of
+from affcli.lab.run_parts import RunParts, require_learned, world_of
 from affcli.report.captions import Words
 from affcli.report.transferring import LentTable, lent_tables
 from affcli.store import Store
@@ -200,8 +199,7 @@ def _lender(store: Store, run: LearningRunInfo, spec: LearningSpec, tell: Tell) 
         raise UsageError(f"{place} is not finished; go on with it first: affcli learn --resume")
     if run.spec.logged:
         raise UsageError(f"{place} comes from a log: no camera saw its {tool}; name another")
-    if run.spec.explorer.name == TOLD:
-        raise UsageError(f"{place} is no robot's: its table was computed; name one that learned")
+    require_learned(run, OPTION)
     if run.spec.held == spec.held:
         raise UsageError(
             f"{place} was learned with the {tool} itself: a tool borrows from others; name another "

@@ -33,9 +33,9 @@ from affcli.planning.row_model import SIDE, Ends, Floats, RowModel
 HOPELESS = 60.0
 """Steps that a place costs at most, and one from which no row can be used: those after which a
 trial ends (§7.1)."""
-MOST_PLACES = 4_000
-"""Places whose worth is worked out: a table of 60 by 60 in, an inch apart. What lies beyond is
-hopeless."""
+FINEST, MOST_PLACES = 0.5, 16_000
+"""Inches between places at least, and places whose worth is worked out at most: so fine a grid over
+60 by 60 in, farther than an arm reaches."""
 MOST_ROWS = 200
 """Rows that the worth of places is worked out with; the row to use is chosen among all."""
 SWEEPS, SETTLED = 100, 0.01
@@ -358,7 +358,7 @@ PARTS = (
             "cell": Setting(
                 *(1.0, "in"),
                 "How far apart the places lie whose worth is worked out.",
-                *(0.1, 10.0),
+                *(FINEST, 10.0),
             ),
             **JUDGING,
         },

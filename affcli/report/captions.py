@@ -14,7 +14,14 @@ from affcli.core.specs import LearningSpec, SessionSpec, TrialSpec, Verification
 from affcli.core.tool import Tool
 from affcli.report.figures.words import broken_words, tool_words
 from affcli.report.paired import title as comparison_title
-from affcli.report.words import clock, few_robots_note, many, run_words, settings_words
+from affcli.report.words import (
+    clock,
+    few_robots_note,
+    many,
+    planner_words,
+    run_words,
+    settings_words,
+)
 from affcli.simulation.arm import Reach
 
 HOURS = 1.0
@@ -108,7 +115,7 @@ def trial_words(info: TrialInfo, run: LearningRunInfo) -> Words:
 
 def trial_seed(spec: TrialSpec) -> str:
     """Return the seed of a trial, and its planner and sensor where they are not the usual ones."""
-    planner = "" if str(spec.planner) == PLANNER else f", planner {spec.planner}"
+    planner = "" if str(spec.planner) == PLANNER else f", planner {planner_words(spec.planner)}"
     sensor = "" if spec.sensor == "noisy" else f", sensor {spec.sensor}"
     return f"seed {spec.seed}{planner}{sensor}"
 

@@ -18,7 +18,7 @@ from affcli.core.scene import Scene
 from affcli.core.workspace import Workspace
 from affcli.report.table_map import View, table_map
 from affcli.report.trials import step_json, step_lines
-from affcli.report.words import call_words, movement_words, trial_words
+from affcli.report.words import call_words, movement_words, planner_words, trial_words
 
 WIDE, WORDS = 72, 36
 """From so many columns on the words stand beside the map, and have so many at least."""
@@ -113,8 +113,8 @@ def step_words(replay: Replay, step: ReplayedStep) -> tuple[list[str], list[str]
     """Return why a row was chosen in a step and which were next best; and what came of it."""
     chosen, *others = step.considered
     *why, happened, probability = step_lines(step.step.record, replay.spec.task.goal)
-    planner = str(replay.spec.planner)
-    by = [] if planner == PLANNER else [f"planner: {planner}"]
+    planner = replay.spec.planner
+    by = [] if str(planner) == PLANNER else [f"planner: {planner_words(planner)}"]
     why = [f"row {chosen.id}: {call_words(chosen.row.exploratory)}", *by, "", *why]
     for other in others[:MOST_CLOSE]:
         why.append(

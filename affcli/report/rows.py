@@ -145,7 +145,8 @@ def _facts(
     if line is not None:
         file, at = line
         whence = f"{file.name}, line {at.line}" + (f", object {at.object}" if at.object else "")
-    learned = {"learned": f"step {row.step} of run {run.id} ({whence})"}
+    how = "computed" if run.spec.told else "learned"
+    learned = {how: f"step {row.step} of run {run.id} ({whence})"}
     if borrowed is not None:
         learned = {"borrowed": f"by run {run.id} ({whence}): {borrowed_words(*borrowed)}"}
     facts = {

@@ -176,9 +176,11 @@ def solve_table(
     if any(end.steps for _, end in ends):
         notes.append("counters of the rows used were updated in the stored table")
     compared = any(count is not None for count in paper.values())
+    task_set = ends[0][0].task_set
+    tasks = "" if task_set == TASK_SET else f"{task_set}: "
     table = Sheet(
         ("tool", *columns, "solved", *(("paper",) if compared else ())),
-        title=f"Goal {ends[0][0].goal}: outcome (steps) by start",
+        title=f"{tasks}Goal {ends[0][0].goal}: outcome (steps) by start",
         caption="; ".join(notes),
         left=("tool", *columns),
     )
@@ -210,6 +212,7 @@ def tasks_table(trials: Sequence[Trial], runs: Mapping[str, LearningRunInfo]) ->
         caption="; ".join(
             (
                 ", ".join(used),
+                "counters of the rows used were updated in the stored table",
                 "steps: of a solved trial; in off: from the goal's centre at the end, the median",
                 "error: of where a step was expected to end",
             )

@@ -5,6 +5,7 @@ import math
 import shlex
 from collections.abc import Iterable
 
+from affcli import registry
 from affcli.analysis.experiment import ExperimentResult
 from affcli.analysis.paper import PLANNER, other_parts
 from affcli.analysis.statistics import ENOUGH_ROBOTS, FEWEST
@@ -12,7 +13,7 @@ from affcli.core.behavior import BehaviorCall
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.choice import Move, Reason, Reasons
 from affcli.core.geometry import direction_degrees
-from affcli.core.identity import shown
+from affcli.core.identity import Component, shown
 from affcli.core.observation import Movement
 from affcli.core.specs import LearningSpec, SessionSpec, TrialSpec
 from affcli.core.tool import Tool
@@ -20,6 +21,8 @@ from affcli.errors import one_line
 
 NOT_SAID = "-"
 """In place of a number that a log does not say."""
+NO_ROBOT_S = "no robot's own"
+"""Of a planner that is told what no robot sees, and of the table that it is told."""
 
 
 def many(count: int, noun: str) -> str:
@@ -154,7 +157,16 @@ def settings_words(settings: str) -> str:
 def parts_words(spec: LearningSpec | SessionSpec) -> str:
     """Return the parts of a run that are not the paper's, as ``binding grasp 3 15 deg``."""
     parts = other_parts(spec, call_words)
+    if isinstance(spec, LearningSpec) and spec.told:
+        parts = {"table": f"computed, {NO_ROBOT_S} ({parts.pop('explorer')})"} | parts
+    if isinstance(spec, SessionSpec) and "planner" in parts:
+        parts["planner"] = planner_words(spec.planner)
     return ", ".join(f"{kind} {one_line(text)}" for kind, text in parts.items())
+
+
+def planner_words(planner: Component) -> str:
+    """Return a planner, and that it is no robot's own where it is told what no robot sees."""
+    return f"{planner} ({NO_ROBOT_S})" if registry.is_told(planner) else str(planner)
 
 
 def bindings_words(spec: LearningSpec | SessionSpec) -> str:
@@ -185,7 +197,7 @@ def run_words(spec: LearningSpec | SessionSpec) -> str:
 def trial_words(spec: TrialSpec) -> str:
     """Return which trial: ``t-hook (truly l-hook), goal 3, start 1``, and a planner of its own."""
     truly = "" if spec.shape == spec.tool else f" (truly {spec.shape})"
-    planner = "" if str(spec.planner) == PLANNER else f", planner {spec.planner}"
+    planner = "" if str(spec.planner) == PLANNER else f", planner {planner_words(spec.planner)}"
     return one_line(f"{spec.tool}{truly}, goal {spec.goal}, start {spec.start}{planner}")
 
 

@@ -9,17 +9,21 @@ import pytest
 
 from affcli import registry
 from affcli.baselines.beliefs.pushes import pushes
-from affcli.config import load_settings
+from affcli.config import Settings, load_settings
 from affcli.core.change_detection import MOVEMENT_THRESHOLD
 from affcli.core.geometry import Point, near_any
 from affcli.core.specs import Protocol, RobotRecord
 from affcli.errors import BadInputError, UsageError
-from affcli.lab.believing import belief_of, is_told, require_own, told_spec
+from affcli.lab.believing import belief_of, require_believable, require_own, told_spec
+from affcli.lab.conducting import begin, run
 from affcli.lab.definition import experiment_file
 from affcli.lab.experiment import one_robot
+from affcli.lab.run_parts import RunParts
 from affcli.simulation.pushing import PushSimulator
 from affcli.simulation.wrist_motion import trapezoid
+from affcli.store import Store
 from tests.factories import learning_spec, tool_named
+from tests.lab.quick import counted, now
 
 COARSE = "spacing=2"
 LEARNED = learning_spec("t-hook")
@@ -116,10 +120,65 @@ def test_only_straight_slides_are_known() -> None:
         told_spec(spec, registry.component("planners", f"oracle:{COARSE}"))
 
 
+TURNING = RunParts.chosen(Settings(), repertoire=["paper", "turn-wrist:angle=30"])
+LOPSIDED = RunParts.chosen(load_settings(None, ["puck.mass_offset=0.3"]))
+
+
+@pytest.mark.parametrize("name", ["push-planner", "oracle"])
+@pytest.mark.parametrize(
+    ("parts", "why"),
+    [
+        (TURNING, "is told straight slides alone; leave out turn wrist 30"),
+        (LOPSIDED, "how this one lies changes with every push; name push-planner:even=1"),
+    ],
+)
+def test_what_cannot_be_computed_is_said_before_any_is(
+    name: str, parts: RunParts, why: str
+) -> None:
+    with pytest.raises(BadInputError, match=why):
+        require_believable(registry.component("planners", name), parts)
+
+
+def test_what_can_be_computed_and_what_a_robot_learns_itself_is_let_pass() -> None:
+    require_believable(registry.component("planners", "push-planner:even=1"), LOPSIDED)
+    require_believable(registry.component("planners", "oracle"), RunParts.chosen(Settings()))
+    for parts in (TURNING, LOPSIDED):
+        require_believable(registry.component("planners", "one-step"), parts)
+
+
+def test_what_the_oracle_has_no_use_for_is_not_computed(store: Store, tmp_path: Path) -> None:
+    """Of a tool that broke it knows what is left; a whole one it does not need, and nobody else."""
+    path = tmp_path / "small.toml"
+    path.write_text(FILE.replace(f"push-planner:counters=0,{COARSE}", "nested-query"))
+    what = experiment_file(path)
+    info = begin(store, what, now)
+    counted(run(store, what, info, 1, now))
+    used = [store.learning.runs(session_id=number) for _, number in info.conditions]
+    assert [[one.spec.explorer.name for one in own] for own in used] == [
+        ["random"],
+        ["random"],
+        ["told"],
+    ]
+    assert len(store.trials.trials()) == 3 * 16
+
+
+def test_an_experiment_is_told_so_before_it_begins(tmp_path: Path) -> None:
+    path = tmp_path / "turning.toml"
+    path.write_text(FILE.replace("minutes = 2", 'repertoire = ["paper", "turn-wrist:angle=30"]'))
+    with pytest.raises(BadInputError, match=r"straight slides alone.*in condition static"):
+        experiment_file(path)
+
+
+@pytest.mark.parametrize("belief", ["friction=5", "even=1", "counters=0"])
+def test_the_oracle_can_be_told_no_lies(belief: str) -> None:
+    with pytest.raises(BadInputError, match="no parameter"):
+        registry.component("planners", f"oracle:{belief}")
+
+
 def test_a_robot_has_no_use_for_a_planner_that_is_told() -> None:
     for name, part in registry.parts("planners").items():
         planner = registry.component("planners", name)
-        assert is_told(planner) is part.told is ("no robot's own" in part.summary)
+        assert registry.is_told(planner) is part.told is ("no robot's own" in part.summary)
         if part.told:
             with pytest.raises(UsageError, match="no robot's own"):
                 require_own(planner)

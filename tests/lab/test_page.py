@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from affcli import registry
 from affcli.analysis.breaking import missing_side
 from affcli.analysis.prediction import scores
 from affcli.core.identity import Component
@@ -16,6 +17,8 @@ from affcli.errors import DatabaseError, UsageError
 from affcli.lab.overview import overview_of
 from affcli.lab.page import PUSHES, content_of
 from affcli.lab.predicting import predict, prediction_spec
+from affcli.lab.reproduction import Reproduced, reproduce
+from affcli.lab.run_parts import RunParts
 from affcli.lab.verifying import verification_spec, verify
 from affcli.report.page.content import Content
 from affcli.report.page.rendering import render
@@ -305,6 +308,19 @@ def test_a_robot_of_one_s_own_comes_before_those_of_a_reproduction(reproduced: S
     assert content.reproduction is not None
     assert content_of(reproduced, robots=[0]).robot == "robot 0 of 1, seed 8"
     assert content_of(reproduced, session=1).robot == "robot 0 of 2, seed 7"
+
+
+def test_a_baseline_s_page_shows_its_trials_and_says_that_it_is_no_robot_s_own(
+    store: Store,
+) -> None:
+    """Nothing was learned: there is no course of learning to show."""
+    parts = RunParts.chosen(IMPATIENT)
+    oracle = Reproduced(parts, registry.component("planners", "oracle:spacing=2"), 7)
+    counted(reproduce(store, oracle, 1, 1, now))
+    content = content_of(store)
+    assert (content.curves, content.bands) == ({}, {})
+    assert (len(content.replays), content.not_replayed) == (96, {})
+    assert "table computed, no robot&#39;s own" in render(content, "")
 
 
 def test_a_half_finished_reproduction_is_shown_with_the_robots_that_are_saved(

@@ -19,11 +19,11 @@ from affcli.core import transfer
 from affcli.core.identity import Component
 from affcli.core.mask import Mask
 from affcli.core.records import LearningRunInfo
-from affcli.core.specs import LearningSpec
+from affcli.core.specs import TOLD, LearningSpec
 from affcli.core.transfer import Borrowing, Transfer
 from affcli.errors import AffcliError, BadInputError, DatabaseError, NotSeenError, UsageError
-from affcli.lab.believing import TOLD
 from affcli.lab.breaking import break_tool
+from affcli.lab.choosing import learned_runs
 from affcli.lab.conducting import begin, run
 from affcli.lab.definition import experiment_of
 from affcli.lab.learning import begun, interrupted, learn
@@ -262,6 +262,9 @@ def test_a_table_that_was_told_lends_nothing(store: Store) -> None:
     assert store.learning.append(told.id, 0, (), None, 0.0, done=True, now=now())
     with pytest.raises(UsageError, match="run 1 is no robot's: its table was computed; name one"):
         learn(store, new_tool(store, "1"), now)
+    with pytest.raises(UsageError, match=r"^run 1 is no robot's: its table was computed"):
+        learned_runs(store, None, 1, usable=True)
+    assert learned_runs(store, None, 1)
 
 
 @pytest.mark.parametrize(
