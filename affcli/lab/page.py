@@ -200,7 +200,9 @@ def _of_many(store: Store, robots: Sequence[int], of: SessionInfo | None) -> _Sh
                 "with the command that began it"
             )
         if named := ", ".join(one_line(one.name) for one in experiments_of(store)):
-            return _Shown(f"the results of {named}: not all of its robots is kept", (), (), (), ())
+            return _Shown(
+                f"the results of {named}: what robots learned was not kept", (), (), (), ()
+            )
         raise UsageError(f"nothing learned in {where}; first run: affcli learn --tool t-hook")
     runs: dict[int, list[LearningRunInfo]] = {}
     for run in store.learning.runs(session_id=of.id):

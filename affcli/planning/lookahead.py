@@ -19,6 +19,7 @@ from affcli.planning.nested_query import (
     JUDGING,
     REGRASP,
     REGRASPING,
+    carrying,
     regrasping,
     usable_rows,
 )
@@ -155,11 +156,8 @@ class _Search:
     ) -> None:
         self._situation, self._model, self._rows = situation, model, rows
         self._few = model.thinned(rows, MOST_ROWS)
-        table, seen, wrist = situation.table, situation.seen, situation.wrist
-        self._steps = steps
-        dx = table.offset_x - (seen.object_x - wrist.x)
-        dy = table.offset_y - (seen.object_y - wrist.y)
-        way = np.hypot(dx, dy)
+        table, self._steps = situation.table, steps
+        way = np.hypot(*carrying(table, slice(None), situation.seen, situation.wrist))
         self._carried = REPOSITIONING * (way if anew is None else way + anew)
         self._goal = HalfPlanes(situation.goal)
         self._layers = self._searched(depth, beam)
@@ -181,8 +179,9 @@ class _Search:
         return begun.x[where[rows]], begun.y[where[rows]]
 
     def plan(self, first: int) -> tuple[float | None, tuple[Move, ...]]:
-        """Return the best path that begins with a row: the steps that it should take to the goal,
-        None when it does not lead there, and its moves.
+        """Return the best path that begins with a row: the steps that it should take to the goal
+        and what the inches beside its middle are worth; None when it does not lead there. And its
+        moves.
         """
         worth = self._least[first]
         number, at = next(

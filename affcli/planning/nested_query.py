@@ -136,10 +136,18 @@ def least_repositioning(
     """
     if not len(rows):
         return None
-    dx = table.offset_x[rows] - (seen.object_x - wrist.x)
-    dy = table.offset_y[rows] - (seen.object_y - wrist.y)
+    dx, dy = carrying(table, rows, seen, wrist)
     squared = dx * dx + dy * dy
     return int(rows[np.argmin(squared if anew is None else np.sqrt(squared) + anew)])
+
+
+def carrying(
+    table: AffordanceTable, rows: Rows | slice, seen: Observation, wrist: Pose
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return how far the wrist is carried to begin each row (n,), (n,) (in, along x and y)."""
+    dx = table.offset_x[rows] - (seen.object_x - wrist.x)
+    dy = table.offset_y[rows] - (seen.object_y - wrist.y)
+    return dx, dy
 
 
 def regrasping(situation: Situation, rows: Rows, cost: float) -> NDArray[np.float64] | None:
@@ -180,8 +188,7 @@ class NestedQuery:
         """Return the rows that search 4 chooses from, the one it chooses first, then the next."""
         table, seen, goal = situation.table, situation.seen, situation.goal
         nearest, _ = self._first_three(situation)
-        dx = table.offset_x[nearest] - (seen.object_x - situation.wrist.x)
-        dy = table.offset_y[nearest] - (seen.object_y - situation.wrist.y)
+        dx, dy = carrying(table, nearest, seen, situation.wrist)
         by = dx * dx + dy * dy
         travel = np.sqrt(by)
         if (anew := regrasping(situation, nearest, self.regrasp)) is not None:

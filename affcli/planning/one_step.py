@@ -15,7 +15,7 @@ from affcli.core.choice import Candidate, Choice, Reason, Reasons, Situation
 from affcli.core.part import Part
 from affcli.core.setting import Setting
 from affcli.planning.neighbours import smoothed
-from affcli.planning.nested_query import JUDGING, REGRASP, regrasping, usable_rows
+from affcli.planning.nested_query import JUDGING, REGRASP, carrying, regrasping, usable_rows
 from affcli.planning.row_model import Floats, RowModel
 
 
@@ -92,9 +92,7 @@ def candidates(
         order: which of them come first (m,).
         regrasp: a new grasp counts as so much re-positioning (in).
     """
-    table, seen, wrist = situation.table, situation.seen, situation.wrist
-    dx = table.offset_x[rows] - (seen.object_x - wrist.x)
-    dy = table.offset_y[rows] - (seen.object_y - wrist.y)
+    dx, dy = carrying(situation.table, rows, situation.seen, situation.wrist)
     anew = regrasping(situation, rows, regrasp)
     more = np.zeros(len(rows)) if anew is None else anew
     return tuple(

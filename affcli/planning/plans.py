@@ -46,7 +46,7 @@ class HalfPlanes:
 
 
 def told(steps: float | None, moves: tuple[Move, ...], *, followed: bool) -> Reason:
-    """Return a plan as a reason: what it is, and the steps that it should take to the goal; or
+    """Return a plan as a reason: what it is, and what it should cost to the goal in steps; or
     without a way there, which is None, how many moves it looks ahead.
     """
     if steps is not None:

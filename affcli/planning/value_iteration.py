@@ -18,7 +18,7 @@ from affcli.core.affordance_table import Rows
 from affcli.core.choice import Candidate, Choice, Move, Reason, Reasons, Situation
 from affcli.core.part import Part
 from affcli.core.setting import Setting
-from affcli.planning.nested_query import JUDGING, usable_rows
+from affcli.planning.nested_query import JUDGING, carrying, usable_rows
 from affcli.planning.one_step import candidates
 from affcli.planning.plans import (
     CLOSE,
@@ -37,7 +37,8 @@ FINEST, MOST_PLACES = 0.5, 16_000
 """Inches between places at least, and places whose worth is worked out at most: so fine a grid over
 60 by 60 in, farther than an arm reaches."""
 MOST_ROWS = 200
-"""Rows that the worth of places is worked out with; the row to use is chosen among all."""
+"""Rows that the worth of places is worked out with, of those alike the oldest, also when it is
+excluded; the row to use is chosen among all."""
 SWEEPS, SETTLED = 100, 0.01
 """How often the worths are worked out anew from each other at most, and the change of any (steps)
 at which they are left."""
@@ -288,12 +289,10 @@ class _Outlook:
         self._situation, self._steps = situation, steps
         self._goal = HalfPlanes(situation.goal)
         self._ways, self._worth = worths.of(situation, first, steps, self._goal)
-        seen, wrist, table = situation.seen, situation.wrist, situation.table
-        self._at = seen.object_position
+        self._at = situation.seen.object_position
         self.first, self.away, self._cost = first, self._away(first), self._expected(first)
-        dx = table.offset_x[first.row] - (seen.object_x - wrist.x)
-        dy = table.offset_y[first.row] - (seen.object_y - wrist.y)
-        carried = REPOSITIONING * np.hypot(dx, dy)
+        carries = carrying(situation.table, first.row, situation.seen, situation.wrist)
+        carried = REPOSITIONING * np.hypot(*carries)
         self._live = self._ways.rows[np.isfinite(steps[self._ways.rows])]
         self._whole = self._cost + STEPS_INSIDE * (self.away + carried)
 

@@ -213,7 +213,9 @@ def test_resume_alone_keeps_as_much_of_lives_as_before(file: Path, tmp_path: Pat
     assert rows(path, "SELECT count(DISTINCT robot) FROM trial") == [(2,)]
     page = tmp_path / "page.html"
     said = done("report", "--html", page, "--db", path).err
-    assert said.startswith("the results of two: not all of its robots is kept, 0 trials to replay")
+    assert said.startswith(
+        "the results of two: what robots learned was not kept, 0 trials to replay"
+    )
     text = page.read_text()
     assert '<h2 id="experiment-1">Does the friction matter?</h2>' in text
     assert "Where does a tool afford pulling?" not in text

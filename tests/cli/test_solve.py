@@ -218,7 +218,7 @@ def test_random_tasks_are_the_same_for_every_planner_and_say_what_they_came_to(
     ("asked", "code", "says"),
     [
         (("--task", "anywhere", "--n", "0"), 4, "--n 0: must lie in 1 to"),
-        (("--goal", "1", "--n", "3"), 4, "extension-of-reach: no parameter n"),
+        (("--goal", "1", "--n", "3"), 2, "--n is of random tasks, not of extension-of-reach"),
         (("--task", "anywhere:half_width=99"), 4, "half_width = 99 must lie in [0.1, 10] (in)"),
         (("--task", "anywhere", "--goal", "21"), 2, "no goal '21'"),
         (("--goal", "1", "--planner", "lookahead:depth=9"), 4, "depth = 9 must lie in [1, 8]"),
